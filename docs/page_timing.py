@@ -64,14 +64,14 @@ ANSWERS = """() => performance.getEntriesByType("resource")
     .map(({ name, startTime, responseEnd }) =>
         [decodeURIComponent(name.slice(name.indexOf("/table") - 4)), responseEnd - startTime, responseEnd])"""
 DRAWN = ".main-svg"
-"""What the drawing library has drawn."""
+"""Pictures that the drawing library has drawn."""
 SEEN = f":is(.sketch, {DRAWN})"
 """A picture that is seen: drawn, or sketched before."""
 
 
 @dataclass
 class View:
-    """What is shown."""
+    """View to be measured."""
 
     name: str
     link: str
@@ -82,7 +82,7 @@ class View:
 
 
 def views(sweep: str) -> list[View]:
-    """What is measured."""
+    """Views that are measured."""
     of_sweep, of_point = f"#/sweeps/{sweep}?view=", f"#/sweeps/{sweep}/points/1?view="
 
     def pictured(name: str, link: str, place: str = ".plot") -> View:
@@ -150,7 +150,7 @@ def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, fl
 
 @dataclass
 class Brushed:
-    """What a drag across a history was like."""
+    """Measurements of a drag across a history."""
 
     frames: float
     """Frames of the browser in a second."""

@@ -73,7 +73,7 @@ def references(schema: Schema) -> list[str]:
 
 
 def kind(schema: Schema) -> str:
-    """What a field takes."""
+    """Type of a field."""
     if "$ref" in schema:
         return schema["$ref"].removeprefix(PREFIX)
     if "oneOf" in schema:
@@ -95,7 +95,7 @@ def alternative(schema: Schema) -> str:
 
 
 def text(schema: Schema) -> str:
-    """What it means, on one line."""
+    """Meaning, on one line."""
     parts = [schema.get("description", "")] + [
         part.get("description", "")
         for part in schema.get("oneOf", [])

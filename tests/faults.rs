@@ -60,7 +60,7 @@ impl Logged {
 }
 
 impl Logged {
-    /// What it has logged so far.
+    /// Its log so far.
     pub(crate) fn log(&self) -> String {
         self.log.lock().unwrap().clone()
     }
@@ -124,7 +124,7 @@ pub(crate) fn bytes(url: &str) -> Vec<u8> {
     ureq::get(url).call().unwrap().body_mut().read_to_vec().unwrap()
 }
 
-/// What `drillsweep check` finds: the numbers of results, and what is wrong.
+/// Report of `drillsweep check`: the number of results, and the problems.
 fn check(data: &Path) -> (u64, Vec<Value>) {
     checked(&mut command(data, &["check", "--json"]))
 }
@@ -171,7 +171,7 @@ impl Clock {
         command
     }
 
-    /// So many seconds before or after the machine's clock.
+    /// Sets the shift from the machine's clock \[s\]; positive is ahead.
     pub(crate) fn set(&self, seconds: i64) {
         // In one step: nobody reads half a number.
         let written = self.directory.path().join("next");

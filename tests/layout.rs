@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
-/// Who may use whom, among the workspace's own crates.
+/// Permitted dependencies among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
     ("drillsweep-fft", &[]),
     ("drillsweep-scenario", &[]),

@@ -68,7 +68,7 @@ fn collect_files(directory: &Path, files: &mut BTreeMap<String, Vec<u8>>) {
     }
 }
 
-/// What is computed before the move.
+/// Request of the sweep that is computed before the move.
 fn swept() -> Value {
     let mut request = request(0.5, 3, 2);
     request["set"]["accuracy"] = "draft".into();
@@ -99,7 +99,7 @@ fn report(command: &mut Command) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// What a server tells of a sweep that is finished: all of it, to the byte.
+/// Answers of a server about a finished sweep: all of them, to the byte.
 fn told(server: &str, sweep: &str) -> Vec<Vec<u8>> {
     let url = format!("{server}/v1/sweeps/{sweep}");
     let mut told: Vec<Vec<u8>> = ["?", "/points?limit=500", "/table?format=csv", "/events"]

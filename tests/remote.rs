@@ -29,7 +29,7 @@ const WORKER_KILLS: usize = 20;
 /// How long the object store is away.
 const AWAY: Duration = Duration::from_secs(30);
 
-/// What all processes have in common, wherever they run.
+/// Resources that all processes share, wherever they run.
 pub(crate) struct Site {
     pub(crate) postgres: Postgres,
     pub(crate) objects: Seaweed,
@@ -88,7 +88,7 @@ impl Site {
         Logged::start(&mut self.command(&["worker", "--lease-seconds", "2", "--pace", pace]))
     }
 
-    /// What opens the store as it is after some time.
+    /// Configuration that opens the store as it is after some time.
     fn store(&self, clock_offset_ms: i64) -> StoreConfig {
         StoreConfig {
             database: self.postgres.url().parse().unwrap(),
@@ -172,7 +172,7 @@ fn follow(url: &str, events: &Mutex<BTreeMap<u64, Value>>) -> bool {
     false
 }
 
-/// What happens beside the kill of a worker.
+/// Fault in addition to the kill of a worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fault {
     /// Nothing else.

@@ -38,7 +38,7 @@ def compose(*arguments: str, **environment: str) -> subprocess.CompletedProcess[
 
 @pytest.fixture
 def secrets(tmp_path: Path) -> Path:
-    """What the script makes, in a directory of the test's own."""
+    """Secrets that the script makes, in a directory of the test's own."""
     directory = tmp_path / "secrets"
     subprocess.run([MAKE_SECRETS, directory], check=True)
     return directory
@@ -49,7 +49,7 @@ Compose = Callable[[str], dict[str, Any]]
 
 @pytest.fixture
 def composed(secrets: Path) -> Compose:
-    """What Compose makes of the file for a profile."""
+    """Configuration that Compose makes of the file for a profile."""
 
     def composed(profile: str) -> dict[str, Any]:
         variables = {"DRILLSWEEP_SECRETS": str(secrets), "DRILLSWEEP_LEASE_SECONDS": "2"}
@@ -261,7 +261,7 @@ def test_services_of_one_person_run_a_sweep_and_survive_a_killed_worker(single: 
 
 
 def ending_with_the_test(signal: str) -> list[str]:
-    """What a server is started by that ends with the process of the test, however that ends."""
+    """Command that starts a server so that it ends with the process of the test, however that ends."""
     return ["setpriv", f"--pdeathsig={signal}"]
 
 
@@ -276,7 +276,7 @@ def postgres_program(name: str) -> list[str]:
 
 @contextlib.contextmanager
 def database(configuration: dict[str, Any]) -> Iterator[str]:
-    """What the image of PostgreSQL does with its environment; yields the address."""
+    """Starts a database as the image of PostgreSQL does in its environment; yields the address."""
     environment = configuration["services"]["database"]["environment"]
     password = Path(secret_files(configuration)[environment["POSTGRES_PASSWORD_FILE"]]).read_text()
     user = environment["POSTGRES_USER"]

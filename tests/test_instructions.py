@@ -17,7 +17,8 @@ STEP = {"esdirk4": 1_060_000, "generalized_alpha": 252_500, "rk4": 508_400}
 Rust 1.95 and without incremental compilation. A change that lowers a count lowers it here too."""
 
 MARGIN = 0.05
-"""What another processor or C library may add, or incremental compilation save: it cuts the code into other units."""
+"""Share that another processor or C library may add, or incremental compilation save: it cuts the code into other
+units."""
 
 
 def counts(method: str, steps: int, folder: Path) -> Counter[str]:

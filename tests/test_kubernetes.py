@@ -18,7 +18,7 @@ FOLDER = REPOSITORY / "deploy" / "kubernetes"
 VERSION = "1.31"
 
 DRAIN_SECONDS = 10
-"""What the server gives open requests to end."""
+"""Time that the server gives open requests to end."""
 
 DATABASE_SECONDS = 60
 """How long a server that starts waits for its database."""

@@ -15,7 +15,7 @@ METHODS = ["esdirk4", "generalized_alpha", "rk4"]
 
 
 def last_state(program: Path, method: str) -> str:
-    """What the example prints after 200 steps: displacements of a node with all their digits."""
+    """Output of the example after 200 steps: displacements of a node with all their digits."""
     return subprocess.run([program, method, "200"], check=True, capture_output=True, text=True).stdout
 
 

@@ -41,7 +41,7 @@ class Slurm:
             self.tasks.append(subprocess.Popen(["bash", str(SCRIPT)], env={**self.environment, **own}))
 
     def time_is_nearly_over(self) -> None:
-        """What `--signal` asks for: to the batch shell alone, whatever it has started."""
+        """Sends the signal of `--signal`: to the batch shell alone, whatever it has started."""
         to, name = re.fullmatch(r"(B):([A-Z]+)@\d+", self.options["signal"]).groups()  # type: ignore[union-attr]
         assert to == "B"
         for task in self.tasks:

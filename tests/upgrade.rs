@@ -53,7 +53,7 @@ fn id(worker: &Logged) -> String {
     })
 }
 
-/// What a sweep waits for: the version, and those that are there.
+/// Version that a sweep waits for, and those that are there.
 fn waiting_for(server: &str, sweep: &str) -> Value {
     let waiting = &get(&format!("{server}/v1/sweeps/{sweep}"))["waiting_for"];
     if waiting.is_null() {

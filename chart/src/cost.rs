@@ -63,7 +63,7 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
     }
 }
 
-/// What stands at the vertical axis.
+/// Label of the vertical axis.
 fn label(measure: Measure, report: &CostReport) -> String {
     let window = || match report.settles {
         true => "once settled".to_owned(),

@@ -76,7 +76,7 @@ pub fn history(
     Ok(drawing)
 }
 
-/// What stands below the lateral motion of a string that twists.
+/// Quantities shown below the lateral motion of a string that twists.
 const ROTATION: [&Quantity; 2] = [&ROTATION_SPEED, &TORQUE];
 
 /// Rotation speed and torque of one node, as far as they vary.
@@ -92,7 +92,7 @@ struct Panel<'t> {
     quantity: &'static Quantity,
     table: &'t Table,
     column: &'t str,
-    /// What the line is.
+    /// Name of the line.
     line: String,
 }
 

@@ -16,7 +16,7 @@ pub struct Place {
     pub low_side: Option<f64>,
 }
 
-/// What a column is; of a node that is among the `places`, where that lies and which way it moves.
+/// Description of a column; of a node that is among the `places`, with where that lies and which way it moves.
 pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
     let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);

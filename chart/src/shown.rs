@@ -48,7 +48,7 @@ impl<'t> Shown<'t> {
         Ok(Shown { columns, unit })
     }
 
-    /// What stands at the axis; a column of one of the `places` says where that is.
+    /// Label of the axis; a column of one of the `places` gives where that is.
     pub(crate) fn label(&self, places: &[Place]) -> String {
         let name = match self.columns.as_slice() {
             [(only, _)] => at_place(only, places),
@@ -74,7 +74,7 @@ pub(crate) fn amount(name: &str, value: f64) -> String {
     }
 }
 
-/// What columns have in common: their quantity, or else its dimension.
+/// Words that columns have in common: their quantity, or else its dimension.
 fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
     let quantities: Vec<&Quantity> = names.filter_map(quantity::of).collect();
     match quantities.as_slice() {

@@ -13,7 +13,7 @@ use crate::shown::{Shown, amount, axis, numbers, with_unit, words};
 /// The motion regime of a run that has not settled.
 const NOT_SETTLED: &str = "not_settled";
 
-/// What of a sweep is shown, and how.
+/// Part of a sweep that is shown, and how.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SweepView {
     /// How the values of parameters are placed on a map.
@@ -126,7 +126,7 @@ pub fn sweep(
     Ok(plot.drawing())
 }
 
-/// What of a sweep's table one picture shows.
+/// Part of a sweep's table that one picture shows.
 struct Slice<'t> {
     /// Rows of the table, in order.
     rows: Vec<usize>,

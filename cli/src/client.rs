@@ -44,7 +44,7 @@ pub(crate) struct Client {
     token: Option<String>,
 }
 
-/// What a server answered.
+/// Answer of a server.
 pub(crate) struct Answer {
     pub(crate) status: StatusCode,
     headers: HeaderMap,
@@ -280,7 +280,7 @@ fn no_answer(url: &str) -> String {
     format!("no answer from {url}; is the server up?")
 }
 
-/// What does not stand for itself in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.
+/// Characters that are encoded in a segment of a path and in the value of a query: all but RFC 3986's unreserved characters.
 const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
 /// A text as a segment of a path, or as the value of a query.

@@ -1,4 +1,4 @@
-//! What accuracy costs for a scenario, measured on this machine.
+//! Cost of accuracy for a scenario, measured on this machine.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -60,10 +60,10 @@ pub(crate) struct CostArguments {
     /// summary.csv and summary.json of all beside them.
     #[arg(long, value_name = "DIRECTORY")]
     output: Option<PathBuf>,
-    /// What the chart shows: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
+    /// Measure of the chart: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
     #[arg(long)]
     measure: Option<Measure>,
-    /// What is printed: of several scenarios every report and a table of all (text), that table (csv), or both (json).
+    /// Format of the output: of several scenarios every report and a table of all (text), that table (csv), or both (json).
     #[arg(long, default_value = "text")]
     format: Format,
 }

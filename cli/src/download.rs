@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use crate::client::ServerArguments;
 
-    /// What a server does with a request, by its number.
+    /// Fate of a request at a server, by the request's number.
     type Behaviour = fn(usize) -> Fate;
 
     #[derive(Clone, Copy)]

@@ -44,7 +44,7 @@ pub(crate) struct RetentionArguments {
 }
 
 impl RetentionArguments {
-    /// What is kept for how long.
+    /// Retention policy by these arguments.
     pub(crate) fn policy(&self) -> RetentionPolicy {
         let mut policy = Retaining::default().policy;
         policy.artifact_ages = Retaining::of_recordings(DAY * self.recordings_days);

@@ -1,4 +1,4 @@
-//! What a scenario will take, without running it.
+//! Plan of a scenario: estimates of what it will take, without running it.
 
 use std::fmt::Write as _;
 

@@ -1,11 +1,11 @@
-//! What the processor must have.
+//! Instructions that the processor must have.
 
 use std::arch::x86_64::{__cpuid, __cpuid_count};
 
 /// Refuses a processor without the instructions that this program is compiled for: it would end at the first of them without a word.
 ///
 /// # Errors
-/// What is missing, and how to build a program that does not need it.
+/// The missing instructions, and how to build a program that does not need them.
 // Asked of the processor itself: `is_x86_feature_detected!` takes what the compiler may assume for the answer.
 #[inline(never)]
 pub(crate) fn check() -> Result<(), String> {

@@ -16,7 +16,7 @@ pub(crate) struct ScenarioArguments {
     changes: ChangeArguments,
 }
 
-/// What to change in a scenario.
+/// Changes to a scenario.
 #[derive(Args)]
 pub(crate) struct ChangeArguments {
     /// Change a field of the scenario, such as `mud.flow_rate=0.04` or `mud=null`.

@@ -78,7 +78,7 @@ enum Ending {
     Hung,
 }
 
-/// What a thread is at: the scene, since when, and the handle that stops it.
+/// Progress of a thread: the scene, since when, and the handle that stops it.
 type Watch = Mutex<Option<(u64, Instant, Arc<Control>)>>;
 
 /// Runs the scenes and prints the report.
@@ -196,13 +196,13 @@ struct Report {
     ledgers_out_of_bound: u64,
     panics: u64,
     hangs: u64,
-    /// What a finer step says of the scenes that ask for a tolerance on statistics, and of those whose steps are given.
+    /// Verdicts of a finer step on the scenes that request a tolerance on statistics, and on those whose steps are given.
     finer: [FinerCounts; 2],
-    /// What broke the contract.
+    /// Breaches of the contract, each with its scene.
     faults: Vec<(u64, String)>,
 }
 
-/// What a finer step says of scenes with a result.
+/// Verdicts of a finer step on scenes with a result.
 #[derive(Default)]
 struct FinerCounts {
     agree: u64,
@@ -217,7 +217,7 @@ struct FinerCounts {
 /// A scene whose result a finer step contradicts.
 struct Differing {
     index: u64,
-    /// What differs most.
+    /// Largest difference.
     difference: Difference,
     /// The error by steps that the result reports, relative; absent where it is unknown.
     told: Option<f64>,
@@ -230,7 +230,7 @@ impl Differing {
     }
 }
 
-/// So many of the scenes that differ are named, the worst first.
+/// Number of differing scenes that are named, the worst first.
 const NAMED: usize = 5;
 
 impl FinerCounts {

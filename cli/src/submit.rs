@@ -33,7 +33,7 @@ pub(crate) struct SubmitArguments {
     /// Accuracy: draft, standard or reference.
     #[arg(long)]
     accuracy: Option<String>,
-    /// What is kept of each point: `summary` (its row of the table alone), `spectra`, `full`, or JSON such as
+    /// Outputs that are kept of each point: `summary` (its row of the table alone), `spectra`, `full`, or JSON such as
     /// `{"orbits": {"window": {"from": 40, "to": 60}, "decimation": 4}}`.
     #[arg(long, value_parser = parse_value)]
     outputs: Option<Value>,
@@ -44,7 +44,7 @@ pub(crate) struct SubmitArguments {
     /// A name for people.
     #[arg(long)]
     name: Option<String>,
-    /// Whose share of the workers it counts against.
+    /// Owner, whose share of the workers it counts against.
     #[arg(long, env = "DRILLSWEEP_OWNER")]
     owner: Option<String>,
     /// A word to find the sweep by; may be given again.
@@ -116,7 +116,7 @@ pub(crate) struct AppendArguments {
 }
 
 impl DesignArguments {
-    /// What a request says of its points.
+    /// Part of a request that describes its points.
     fn request(&self) -> AppendRequest {
         let named = [("flow_rate", &self.flow_rate), ("mud_density", &self.mud_density)];
         let named = named.into_iter().filter_map(|(name, axis)| Some((name, axis.as_ref()?)));
@@ -222,7 +222,7 @@ fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
     )
 }
 
-/// What is read of the answer to a dry run.
+/// Fields that are read from the answer to a dry run.
 #[derive(Deserialize)]
 struct DryRun {
     total: u64,
@@ -286,7 +286,7 @@ impl DryRun {
     }
 }
 
-/// What can be simulated but is probably not meant.
+/// Logs what can be simulated but is probably not meant.
 fn warn(sweep: &Sweep) {
     for warning in &sweep.warnings {
         tracing::warn!("{}: {}", warning.pointer.as_deref().unwrap_or_default(), warning.detail);

@@ -21,7 +21,7 @@ const ENDPOINT: &str = "OTEL_EXPORTER_OTLP_ENDPOINT";
 /// How long a collector may take to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What is exported, whatever the log shows: this program's own spans.
+/// Spans that are exported, whatever the log shows: this program's own.
 const SPANS: (&str, Level) = ("drillsweep", Level::INFO);
 
 /// The way to the collector. Dropped, it sends what is left.

@@ -40,7 +40,7 @@ pub(crate) fn columns(
     lines.join("\n")
 }
 
-/// What went wrong and why, each cause once: many errors tell of their cause themselves.
+/// Error with its causes, each once: many errors report their cause themselves.
 pub(crate) fn chain(error: &anyhow::Error) -> String {
     let mut told = error.to_string();
     for cause in error.chain().skip(1) {
@@ -52,7 +52,7 @@ pub(crate) fn chain(error: &anyhow::Error) -> String {
     told
 }
 
-/// So many of something whose plural has an s.
+/// Number with its noun, whose plural has an s.
 pub(crate) fn count(number: impl Display, of: &str) -> String {
     let number = number.to_string();
     let plural = if number == "1" { "" } else { "s" };

@@ -38,10 +38,10 @@ pub(crate) enum TokenCommand {
 pub(crate) struct CreateArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Whose sweeps are submitted with it.
+    /// Owner of the sweeps that are submitted with it.
     #[arg(long)]
     owner: String,
-    /// What it allows; each scope includes those before it.
+    /// Permissions; each scope includes those before it.
     #[arg(long, value_enum, default_value = "submit")]
     scope: Scope,
     /// A name for people, such as the machine that it is for.

@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 pub enum Accuracy {
     /// A named preset.
     Preset(AccuracyPreset),
-    /// What error is allowed.
+    /// An allowed error.
     Target(AccuracyTarget),
     /// Integrator and step in full.
     Explicit(TimeStepping),
@@ -90,7 +90,7 @@ impl Accuracy {
         (allowed / standard).sqrt().clamp(*MESH_FACTORS.start(), *MESH_FACTORS.end())
     }
 
-    /// What the choice promises of statistics; absent where integrator and step are given, which promise nothing.
+    /// Promise of the choice for statistics; absent if integrator and step are given, which promise nothing.
     pub fn promise(&self) -> Option<Promise> {
         let orbit_size = self.statistics_tolerance()?;
         Some(match self {
@@ -103,7 +103,7 @@ impl Accuracy {
     }
 }
 
-/// What an accuracy promises of a run's statistics: the largest bias against the converged values, relative.
+/// Promise of an accuracy for a run's statistics: the largest bias against the converged values, relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promise {
     /// Of orbit sizes.
@@ -233,9 +233,9 @@ pub struct TimeStepping {
     pub integrator: Integrator,
     /// Step \[s\], above 0; with a tolerance the longest one. A fixed step is a whole part of the recording interval, or for
     /// `esdirk4` that times a power of two. Usual 2.5e-4 to 8e-3 for `esdirk4`, 1e-4 to 1e-3 for `generalized_alpha`, 1e-5 to 6e-5
-    /// for `rk4`. Implicit methods damp what a long step does not resolve, and cut it into up to 4096 parts where contact sweeps
+    /// for `rk4`. Implicit methods damp what a long step does not resolve, and cut it into up to 4096 parts where contact iterations
     /// would diverge; `rk4` is refused beyond its stability limit. Below 1e-4 s implicit methods no longer damp the torsion of
-    /// single elements, which falling friction feeds unless `damping.stiffness_proportional` is above 0.
+    /// single elements, which velocity-weakening friction feeds unless `damping.stiffness_proportional` is above 0.
     pub step: f64,
     /// Contact sweeps a solve, 2 to 1000, 2 unless given (implicit methods). Two are a fixed number; more are a limit on sweeps
     /// that end once they have converged (1e-9 m, and 1e-6 of a friction coefficient). Usual 2, or 30 for a reference: with fixed
@@ -251,7 +251,7 @@ pub struct TimeStepping {
     pub tolerance: Option<f64>,
     /// Spectral radius at infinite frequency (`generalized_alpha` only), 0 to 0.95; absent means 0.8, usual 0.6 to 0.9. Smaller
     /// values damp more, also of what a step resolves; larger ones leave unresolved frequencies undamped. One, the trapezium rule,
-    /// damps nothing, and with a fixed number of contact sweeps it fails silently.
+    /// damps nothing, and with a fixed number of contact iterations it fails silently.
     #[serde(default)]
     pub spectral_radius: Option<f64>,
 }
@@ -272,7 +272,7 @@ impl TimeStepping {
         Self { tolerance: Some(tolerance), ..Self::fixed(Integrator::Esdirk4, step) }
     }
 
-    /// A method with a fixed step \[s\] and two contact sweeps.
+    /// A method with a fixed step \[s\] and two contact iterations.
     pub fn fixed(integrator: Integrator, step: f64) -> Self {
         Self { integrator, step, contact_sweeps: two(), tolerance: None, spectral_radius: None }
     }

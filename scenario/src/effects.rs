@@ -24,7 +24,7 @@ pub enum Switch {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum AutoRule {
-    /// What could not change a number.
+    /// Terms that could not change a number.
     #[default]
     Exact,
     /// Gyroscopic moments, Coriolis terms and flow stiffness too where they are estimated to change frequencies by less than

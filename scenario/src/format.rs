@@ -94,7 +94,7 @@ pub(super) fn from_value<T: DeserializeOwned>(value: serde_json::Value) -> Resul
     read(value)
 }
 
-/// What serde_json found wrong with a text that is not JSON.
+/// Problem that serde_json found with a text that is not JSON.
 pub(super) fn not_json(error: &serde_json::Error) -> Problem {
     Problem::new("", "", format!("not JSON: {error}"))
 }

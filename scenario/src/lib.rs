@@ -69,7 +69,7 @@ pub struct Scenario {
     /// run may take. Usual 20 to 120 with a fixed window, 300 with a settled one. Too short, and the statistics show how the run
     /// starts: torsion that friction feeds can take 100 s to swing up to stick-slip. Longer runs cost processor time in proportion.
     pub duration: f64,
-    /// What is kept of the run.
+    /// Data kept of the run.
     pub recording: Recording,
     /// How finely time is resolved: a preset, a tolerance, or integrator and step in full; absent means `standard`.
     #[serde(default)]
@@ -137,12 +137,12 @@ pub struct DrillString {
 }
 
 impl DrillString {
-    /// What the bodies of a section are made of.
+    /// Material of the bodies of a section.
     pub fn body_material(&self, section: &Section) -> Material {
         section.material.unwrap_or(self.material)
     }
 
-    /// What a tool joint of a section is made of.
+    /// Material of a tool joint of a section.
     pub fn joint_material(&self, section: &Section, joint: &ToolJoint) -> Material {
         joint.material.unwrap_or_else(|| self.body_material(section))
     }
@@ -171,7 +171,7 @@ pub struct Material {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Section {
-    /// What the section is; it decides which target element length holds, and nothing else.
+    /// Kind of the section; it decides which target element length holds, and nothing else.
     pub kind: SectionKind,
     /// Number of equal pieces, each of `length`; 1 unless given.
     #[serde(default = "one")]
@@ -189,7 +189,7 @@ pub struct Section {
     /// Tool joints at both ends of each piece; absent means a plain body.
     #[serde(default)]
     pub tool_joint: Option<ToolJoint>,
-    /// What the section is made of, such as aluminium or non-magnetic steel; absent means the string's material. A lighter and
+    /// Material of the section, such as aluminium or non-magnetic steel; absent means the string's material. A lighter and
     /// softer section bends more easily into the hole and presses less on its wall.
     #[serde(default)]
     pub material: Option<Material>,
@@ -228,7 +228,7 @@ pub struct ToolJoint {
     pub outer_diameter: f64,
     /// Inner diameter \[m\], 0 to below the outer; usual 0.05 to 0.13, at most that of the body.
     pub inner_diameter: f64,
-    /// What the joint is made of; absent means what its section is made of. Aluminium pipe usually has joints of steel, whose weight
+    /// Material of the joint; absent means that of its section. Aluminium pipe usually has joints of steel, whose weight
     /// it feels.
     #[serde(default)]
     pub material: Option<Material>,
@@ -379,7 +379,7 @@ pub struct ContactLaw {
     pub law: WallLaw,
     /// Largest stiffness k_c of one node \[N/m\], above 0; with the law `per_length` of a gauge. Usual 1e6 to 1e8 on elements of
     /// half a metre: 1 kN sinks a node 0.1 mm into a wall of 1e7. Too small, and penetration is as large as the clearance of a
-    /// gauge; too large, and implicit methods cut their step until contact sweeps converge, into 4096 parts at most, beyond which
+    /// gauge; too large, and implicit methods cut their step until contact iterations converge, into 4096 parts at most, beyond which
     /// the run fails.
     pub stiffness: f64,
     /// Largest damping c_c of one node \[N s/m\], 0 or more; with the law `per_length` of a gauge. Usual 1e3 to 1e5. At 0 nodes
@@ -448,7 +448,7 @@ impl ContactLaw {
     }
 }
 
-/// What stiffness and damping of the wall belong to: with `per_node`, the paper's law, to every node, so that a finer mesh meets a
+/// Basis of the wall's stiffness and damping: with `per_node`, the paper's law, they belong to every node, so that a finer mesh meets a
 /// stiffer wall; with `per_length` to the length of string in contact, so that every mesh meets the same wall, and to gauges as they
 /// are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -464,7 +464,7 @@ pub enum WallLaw {
     PerLength,
 }
 
-/// What happens when the contact's damper would pull: with `allowed` the normal force may turn negative, with `none` it is never
+/// Normal force when the contact's damper would pull: with `allowed` it may turn negative, with `none` it is never
 /// negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -486,7 +486,7 @@ pub struct RayleighDamping {
     /// Hz. Large values suppress whirl and stick-slip; high frequencies stay undamped whatever its value.
     pub mass_proportional: f64,
     /// beta \[s\], 0 or more; usual 1e-6 to 1e-4. The damping ratio beta omega / 2 grows with frequency: 3e-5 s is 0.019 % at 2 Hz
-    /// and 2.6 % at 280 Hz. With 0, falling friction feeds torsion at every frequency, and mesh and step decide what survives;
+    /// and 2.6 % at 280 Hz. With 0, velocity-weakening friction feeds torsion at every frequency, and mesh and step decide what survives;
     /// large values overdamp the vibration of single pipes and lower RK4's stability limit.
     pub stiffness_proportional: f64,
 }

@@ -1,10 +1,10 @@
-//! What of a point's result is kept.
+//! Part of a point's result that is kept.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{NodeChoice, TimeWindow};
 
-/// What is kept of a point beside its row of scalars, which is always there: `"summary"`, `"spectra"`,
+/// Data kept of a point in addition to its row of scalars, which is always there: `"summary"`, `"spectra"`,
 /// `{"orbits": {...}}` or `"full"`. Each class has all that the one before it has, but for the spectra, which follow from histories.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -27,7 +27,7 @@ pub enum Outputs {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct OrbitOutputs {
-    /// Those of these nodes, which must be recorded; absent means all that are.
+    /// Histories of these nodes, which must be recorded; absent means all that are.
     #[serde(default)]
     pub nodes: Option<Vec<NodeChoice>>,
     /// Their samples in this half-open window, of 8 samples at least; absent means the whole run.

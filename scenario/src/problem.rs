@@ -1,4 +1,4 @@
-//! What is wrong with a scenario, and where.
+//! Problems of a scenario, and where they are.
 
 use std::fmt;
 
@@ -11,9 +11,9 @@ use crate::nearest::did_you_mean;
 pub struct Problem {
     /// Path of the field in the scenario, such as `string.sections[1].count`; empty for the whole document.
     pub path: String,
-    /// What was found there; empty if the message says it.
+    /// Value found there; empty if the message gives it.
     pub got: String,
-    /// What would be valid.
+    /// Description of a valid value.
     pub message: String,
 }
 
@@ -75,7 +75,7 @@ fn listed(names: &[&str], last: &str) -> String {
     }
 }
 
-/// What serde found, as the document writes it.
+/// Value or type that serde found, as the document writes it.
 fn found(got: &str) -> &str {
     match got {
         "sequence" => "a list",
@@ -90,7 +90,7 @@ fn found(got: &str) -> &str {
     }
 }
 
-/// What serde expected, without Rust's names of types.
+/// Type that serde expected, without Rust's names of types.
 fn in_words(expected: &str) -> &str {
     let names_a_type = |kinds: &[&str]| {
         kinds.iter().any(|kind| expected.strip_prefix(kind).is_some_and(|rest| rest.starts_with(' ')))
@@ -157,7 +157,7 @@ impl From<Problem> for Problems {
 pub struct Warning {
     /// Path of the field in the scenario.
     pub path: String,
-    /// What will happen, and what may have been meant.
+    /// Consequence, and what may have been meant.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! What a work-precision study of a scenario compares.
+//! Comparisons in a work-precision study of a scenario.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct CostStudy {
     /// most 256.
     #[serde(default = "one")]
     pub members: u32,
-    /// What the others are compared with; absent means RK4 and ESDIRK4 with fine steps.
+    /// Reference of the comparison; absent means RK4 and ESDIRK4 with fine steps.
     #[serde(default)]
     pub reference: StudyReference,
     /// Named accuracies to compare, as they stand; all three unless given.
@@ -74,7 +74,7 @@ const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StudyReference {
-    /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30 contact sweeps;
+    /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30 contact iterations;
     /// for runs that settle `generalized_alpha` with 0.0625 ms and `esdirk4` with 1 ms, both with up to 30.
     #[serde(default)]
     pub methods: Option<Vec<TimeStepping>>,
@@ -112,7 +112,7 @@ pub struct MethodSteps {
 }
 
 impl MethodSteps {
-    /// A method with fixed steps \[s\] and two contact sweeps.
+    /// A method with fixed steps \[s\] and two contact iterations.
     pub fn fixed(integrator: Integrator, steps: Vec<f64>) -> Self {
         Self { integrator, steps, contact_sweeps: two(), tolerance: None }
     }

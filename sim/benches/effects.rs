@@ -1,4 +1,4 @@
-//! What each effect costs in the run in time of the 200 m case, and what `auto` saves where a scene calls for less.
+//! Cost of each effect in the run in time of the 200 m case, and saving by `auto` if a scene calls for less.
 //! Run: `cargo bench -p drillsweep-sim --bench effects`
 
 use divan::Bencher;
@@ -11,7 +11,7 @@ use drillsweep_sim::transient::Transient;
 /// Simulated time of one run \[s\]: 100 steps.
 const DURATION: f64 = 0.05;
 
-/// What can be switched off without the string buckling.
+/// Effects that can be switched off without the string buckling.
 const SWITCHED: [Effect; 16] = [
     Effect::FluidAddedMass,
     Effect::FluidDamping,

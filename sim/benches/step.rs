@@ -1,4 +1,4 @@
-//! What one time step of the 200 m case costs, beside what the machine's caches and arithmetic allow.
+//! Cost of one time step of the 200 m case, next to the limits of the machine's caches and arithmetic.
 //! Run: `cargo bench -p drillsweep-sim --bench step`
 //!
 //! Every figure is the shortest of several repeats in the same process, so that ratios hold on a shared machine.
@@ -15,7 +15,7 @@ use drillsweep_sim::transient::{Outcome, Transient};
 /// Bytes of a block.
 const BLOCK: usize = 36 * 8;
 
-/// What the velocity of a stage is per displacement \[1/s\]: that of ESDIRK4 with 1 ms.
+/// Velocity of a stage per displacement \[1/s\], as of ESDIRK4 with 1 ms.
 const VELOCITY_PER_DISPLACEMENT: f64 = 4e3;
 
 /// Repeats of a short run; the shortest counts.
@@ -119,7 +119,7 @@ fn run(accuracy: Accuracy, duration: f64, lengths: f64) -> Timed {
     timed
 }
 
-/// What the matrices' part of a stage takes: `M a + C v` once, a solve in each of two contact sweeps.
+/// Cost of the matrices' part of a stage: `M a + C v` once, a solve in each of two contact iterations.
 struct Kernels {
     /// Shortest times \[s\].
     products: f64,
@@ -131,7 +131,7 @@ struct Kernels {
     flops_per_stage: usize,
 }
 
-/// Those of the base case and its stages.
+/// Matrices of the base case and its stages.
 struct Matrices {
     mass: BlockTridiagonal,
     damping: BlockTridiagonal,

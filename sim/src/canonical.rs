@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::effect::active_effects;
 
-/// What decides the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
+/// Inputs that decide the numbers of a run: a scenario without its name, its accuracy written out, its effects decided.
 #[derive(Serialize)]
 struct Canonical {
     well: Well,

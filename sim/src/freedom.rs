@@ -63,7 +63,7 @@ impl<const D: usize> Freedoms<D> {
         self.0.iter().position(|&own| own == dof)
     }
 
-    /// Those of a row or column of all six that the system has.
+    /// Picks the entries that the system has out of a row or column of all six.
     pub fn of<T: Copy>(&self, all: &[T; DOFS]) -> [T; D] {
         self.0.map(|dof| all[dof])
     }

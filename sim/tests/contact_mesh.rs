@@ -39,7 +39,7 @@ fn pipe_on_the_low_side(law: WallLaw, stiffness: f64, elements: u32) -> Scenario
     scenario
 }
 
-/// What a pipe that rests on its low side shows.
+/// Results of a pipe that rests on its low side.
 #[derive(Debug, Clone, Copy)]
 struct Resting {
     /// Bending moment at the clamped top \[N m\].

@@ -1,4 +1,4 @@
-//! Torsional modes that falling friction feeds: the chain of shafts against all modes together, and what damping does to them.
+//! Torsional modes that velocity-weakening friction feeds: the chain of shafts against all modes together, and what damping does to them.
 
 use std::f64::consts::PI;
 

@@ -112,7 +112,7 @@ fn samples_within_a_step_are_as_good_as_those_at_its_ends() {
     }
 }
 
-/// What the wall did is read at the ends of steps, from the law: with steps longer than the recording interval it is still what short
+/// Contacts are read at the ends of steps, from the law: with steps longer than the recording interval they are still those that short
 /// steps find, sticking nodes and impacts included.
 #[test]
 fn contacts_of_long_steps_are_those_of_short_ones() {

@@ -1,4 +1,4 @@
-//! What it costs to store a blob and to serve a part of one of which every byte is verified, in a directory and in a bucket of an object
+//! Cost of storing a blob and of serving a part of one of which every byte is verified, in a directory and in a bucket of an object
 //! store on this machine.
 
 use divan::Bencher;

@@ -31,7 +31,7 @@ const SWEEP: &str = "0190";
 /// statements and maps the server's memory, and what was submitted is vacuumed and analyzed for the first time, after which all plan anew.
 const WARM_UP: Duration = Duration::from_secs(60);
 
-/// What is measured.
+/// Parameters of the measurement.
 struct Plan {
     engine: String,
     points: i64,
@@ -141,7 +141,7 @@ impl Spent {
         }
     }
 
-    /// What was spent since, for each of so many points, and which share of the machine's cores that took.
+    /// Prints the processor time spent since then per point, and the share of the machine's cores that it took.
     fn report(&self, what: &str, points: f64, elapsed: Duration, server: Option<&servers::postgres::Server>) {
         let now = Self::now(server);
         let of_server = (now.server - self.server).as_secs_f64();
@@ -167,7 +167,7 @@ fn family_time(parent: u32) -> Duration {
 
 /// Parent of a process, and its processor time with that of the children that it has waited for; none of one that has ended.
 fn own_time(process: u32) -> Option<(u32, Duration)> {
-    /// What Linux counts times in, on all machines that this runs on.
+    /// Unit in which Linux counts times, on all machines that this runs on.
     const TICK: Duration = Duration::from_millis(10);
     let line = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // After the name, which may have any signs in it.

@@ -1,4 +1,4 @@
-//! What the queue costs per point, on a file in the temporary directory, next to a sweep of ten thousand points.
+//! Cost of the queue per point, on a file in the temporary directory, next to a sweep of ten thousand points.
 
 use std::cell::Cell;
 
@@ -102,7 +102,7 @@ fn submit_ten_thousand_points(bencher: Bencher) {
         });
 }
 
-/// What one owner's point waits for while another owner submits and cancels a hundred thousand, time after time.
+/// Submission time of one owner's point while another owner submits and cancels a hundred thousand, time after time.
 #[divan::bench(sample_count = 500, sample_size = 1)]
 fn submit_beside_a_hundred_thousand_points(bencher: Bencher) {
     let directory = tempfile::tempdir().expect("a temporary directory");

@@ -1,9 +1,9 @@
-//! What it takes to carry a store over: a sweep whose points all have small results, from a data directory to PostgreSQL and a bucket, and
+//! Cost of transferring a store: a sweep whose points all have small results, from a data directory to PostgreSQL and a bucket, and
 //! back to a directory.
 //!
 //! `cargo bench -p drillsweep-store --bench transfer -- --points 100000 --tables 1 --bytes 2000`
 //!
-//! Times are by the clock, beside processor time and the peak of the resident memory of this process alone.
+//! Times are by the clock, with processor time and the peak of the resident memory of this process alone.
 
 #![expect(clippy::print_stdout, reason = "a report")]
 
@@ -23,7 +23,7 @@ mod servers;
 /// As one would run it: what it has confirmed is on the disk.
 const SETTINGS: &[&str] = &["fsync=on", "full_page_writes=on", "shared_buffers=512MB", "max_wal_size=1GB"];
 
-/// Who fill the store side by side.
+/// Workers that fill the store concurrently.
 const WORKERS: u64 = 8;
 
 fn main() {

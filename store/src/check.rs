@@ -9,7 +9,7 @@ use crate::query::query;
 use crate::sql;
 use crate::state::{WorkKey, work_key};
 
-/// What a check looked at, and what is wrong.
+/// Extent of a check, and the problems that it found.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CheckReport {
     /// Results looked at.
@@ -18,7 +18,7 @@ pub struct CheckReport {
     pub blobs: u64,
     /// Their size.
     pub bytes: u64,
-    /// What is wrong, one text each; empty where all is well.
+    /// Problems, one text each; empty if all is well.
     pub problems: Vec<String>,
     /// Blobs among these problems that are lost, by their names.
     pub damaged: Vec<String>,

@@ -18,7 +18,7 @@ pub struct StoreConfig {
     pub database: DatabaseLocation,
     /// The object store.
     pub objects: ObjectsLocation,
-    /// Who opens it.
+    /// Role of the process that opens it.
     pub role: Role,
     /// Added to the database's clock \[ms\]: zero but in tests of what time does.
     pub clock_offset_ms: i64,
@@ -53,10 +53,10 @@ impl StoreConfig {
     }
 }
 
-/// Who opens the store; it decides how durable a commit is.
+/// Kind of process that opens the store; it decides how durable a commit is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// What a client was told must survive a power cut.
+    /// Answers to clients must survive a power cut.
     Server,
     /// A lost claim or result is only computed again.
     Worker,

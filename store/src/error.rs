@@ -1,4 +1,4 @@
-//! What can go wrong in the store.
+//! Errors of the store.
 
 use std::error::Error as _;
 use std::io::{self, ErrorKind};
@@ -12,7 +12,7 @@ use crate::blob::{BlobId, untrusted_certificate};
 /// The store's results.
 pub type Result<T> = std::result::Result<T, StoreError>;
 
-/// What can go wrong in the store.
+/// Error of the store.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// The database failed or is busy beyond its patience.
@@ -49,7 +49,7 @@ pub enum StoreError {
     Directory {
         /// The directory or file.
         path: String,
-        /// What the system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A text says neither where a database nor where an object store is.
@@ -63,7 +63,7 @@ pub enum StoreError {
     NetworkFileSystem {
         /// The file.
         path: PathBuf,
-        /// What people call the file system.
+        /// Common name of the file system.
         name: &'static str,
     },
     /// A file outside the store, which is to be stored or fetched into, cannot be read or written.
@@ -98,7 +98,7 @@ impl StoreError {
                 EngineCode::None => false,
             };
         }
-        /// What services of the S3 protocol say: Ceph and SeaweedFS (a quota), MinIO, and others by the status 507.
+        /// Answers of full services of the S3 protocol: Ceph and SeaweedFS (a quota), MinIO, and others by the status 507.
         const FULL: [&str; 3] = ["<Code>QuotaExceeded<", "<Code>XMinioStorageFull<", "status code: 507"];
         self.answer_has(&FULL)
             || self.cause(|error: &io::Error| {
@@ -206,7 +206,7 @@ fn refused_certificate(error: &io::Error) -> Option<&rustls::Error> {
     error.get_ref()?.downcast_ref()
 }
 
-/// What became of an attempt to connect.
+/// Error of a failed attempt to connect.
 pub(crate) fn not_connected(error: sqlx::Error) -> StoreError {
     if let sqlx::Error::Io(cause) = &error
         && let Some(reason) = refused_certificate(cause)

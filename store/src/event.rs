@@ -1,4 +1,4 @@
-//! What happened to the points of a sweep, in order, and which of all sweeps have changed.
+//! Events of the points of a sweep, in order, and changes among all sweeps.
 
 use crate::connection::Store;
 use crate::error::Result;

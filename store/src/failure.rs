@@ -13,7 +13,7 @@ pub struct FailureRecord {
     pub sweep_id: String,
     /// The sweep's name.
     pub sweep_name: Option<String>,
-    /// Whose sweep it is.
+    /// Owner of the sweep.
     pub owner: String,
     /// When it failed \[ms since the epoch\].
     pub at: i64,
@@ -24,9 +24,9 @@ pub struct FailureRecord {
 /// Which failures are listed; what is absent lets all through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FailureFilter<'a> {
-    /// Of sweeps of this owner.
+    /// Owner of the sweeps.
     pub owner: Option<&'a str>,
-    /// Whose error is of this class.
+    /// Class of the error.
     pub class: Option<&'a str>,
 }
 

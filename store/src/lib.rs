@@ -1,4 +1,4 @@
-//! What is asked, what must be computed, what came of it, and where the arrays lie.
+//! Store of sweeps, of work items to be computed, of their results, and of the blobs with their arrays.
 //!
 //! The only crate that knows SQL and blobs. It knows nothing of drillstrings: a work item is a 32-byte key, the
 //! text of a scenario, a state. Every write happens in one statement or one immediate transaction, and every

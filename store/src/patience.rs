@@ -1,4 +1,4 @@
-//! What a process does that is started while its database is not there yet, or not any more.
+//! Retry with backoff of a process that is started while its database is not there yet, or not any more.
 
 use std::time::{Duration, Instant};
 
@@ -7,11 +7,11 @@ use crate::error::Result;
 /// How long a process waits for its database: as long as for its object store.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Does something again for a minute, as long as the database is busy or does not answer. Once the store is open, servers tell their
-/// clients of such an error and workers try again by themselves: this is for what comes before that.
+/// Retries with backoff for a minute, as long as the database is busy or does not answer. Once the store is open, servers report such
+/// an error to their clients and workers retry by themselves: this is for what comes before that.
 ///
 /// # Errors
-/// What the last attempt failed of.
+/// The error of the last attempt.
 pub async fn patiently<T, F: Future<Output = Result<T>>>(mut attempt: impl FnMut() -> F) -> Result<T> {
     /// The longest wait between two attempts.
     const LONGEST: Duration = Duration::from_secs(4);

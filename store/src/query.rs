@@ -3,8 +3,8 @@
 //! A statement has a text for each engine, and the same parameters and columns on all of them. Both engines are compiled in: which
 //! one it is, is known only when the store is opened.
 //!
-//! What runs a statement gives boxed futures, which are not generic: sqlx's code for both engines is then compiled with this crate, and not
-//! once more with every crate that waits for one of its functions.
+//! Functions that run a statement return boxed futures, which are not generic: sqlx's code for both engines is then compiled with this
+//! crate, and not once more with every crate that waits for one of its functions.
 
 use futures::future::BoxFuture;
 use sqlx::postgres::{PgArguments, PgQueryResult, PgRow};
@@ -63,7 +63,7 @@ pub(crate) enum Row {
     Postgres(PgRow),
 }
 
-/// What a row can be read as on either engine: a tuple of columns.
+/// Type that a row can be read as on either engine: a tuple of columns.
 pub(crate) trait Record:
     for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
 {
@@ -71,7 +71,7 @@ pub(crate) trait Record:
 
 impl<T> Record for T where T: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin {}
 
-/// What a column can be read as on either engine.
+/// Type that a column can be read as on either engine.
 pub(crate) trait Column:
     for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
 {
@@ -242,7 +242,7 @@ impl From<PgRow> for Row {
     }
 }
 
-/// What a statement without rows gives.
+/// Result of a statement without rows.
 trait Changed {
     /// How many rows it changed.
     fn rows(self) -> u64;

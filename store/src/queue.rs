@@ -53,7 +53,7 @@ impl Looking {
 /// Work handed to a worker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// What every later write about it must carry.
+    /// Lease that every later write about it must carry.
     pub lease: Lease,
     /// The scenario.
     pub scenario: ScenarioText,
@@ -72,7 +72,7 @@ pub struct Lease {
     pub worker: String,
 }
 
-/// What a worker learns when it renews its lease.
+/// Outcome of a lease renewal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Renewal {
     /// The lease is extended.
@@ -96,7 +96,7 @@ impl Lease {
 }
 
 impl Renewal {
-    /// By whether a cancellation is asked for; that is not known of a lost lease.
+    /// Outcome for a lease whose cancellation is requested or not; none means a lost lease.
     pub(crate) fn of(cancel_requested: Option<bool>) -> Self {
         match cancel_requested {
             None => Renewal::Lost,
@@ -134,7 +134,7 @@ pub struct QueueDepths {
     pub leased: i64,
 }
 
-/// What became of a result whose worker wanted to go on with the next work item.
+/// Outcome of a result whose worker wanted to go on with the next work item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
     /// Whether the result is stored; not if the lease was lost.
@@ -173,7 +173,7 @@ impl Earlier {
         Ok(Some(Self { summary, provenance, disagrees, blobs: blobs.into_iter().collect() }))
     }
 
-    /// What of a new result is not as it was: `summary`, and names of artifacts.
+    /// Parts of a new result that differ from this one: `summary`, and names of artifacts.
     fn differences(&self, result: &NewResult<'_>) -> Vec<String> {
         let mut blobs = self.blobs.clone();
         let mut differences = Vec::new();
@@ -577,7 +577,7 @@ fn claiming(worker: &str, physics_version: i64, lease_ms: i64) -> Query {
 /// Key, fencing token, base, changes, checkpoint.
 type ClaimedRow = (Vec<u8>, i64, String, String, Option<String>);
 
-/// What became of a result, and the same of the next work item where there is one.
+/// Outcome of a result, and the same of the next work item if there is one.
 type FinishedRow = (String, Option<Vec<u8>>, Option<i64>, Option<String>, Option<String>, Option<String>);
 
 fn claimed(rows: Vec<ClaimedRow>, worker: &str) -> Result<Option<Claim>> {

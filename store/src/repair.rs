@@ -10,7 +10,7 @@ use crate::sql;
 use crate::state::{WorkKey, WorkState, work_key};
 use crate::submit::{PLACE_OF_A_POINT, end_of_order};
 
-/// What becomes of a result that has lost a table.
+/// Outcome of repairing a result that has lost a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Repair {
     /// Its work is queued: every sweep that has it counts it as queued until a new result takes the place of this one.
@@ -25,7 +25,7 @@ pub enum Repair {
     Replaced,
 }
 
-/// What was queued anew after a check.
+/// Result of repairs after a check, as numbers of work items.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RepairReport {
     /// Work items that are computed again.

@@ -1,6 +1,6 @@
-//! What is kept, for how long, and how its space comes back.
+//! Retention: what is kept, for how long, and garbage collection of the rest.
 //!
-//! Rows say what is wanted; blobs that no row names, and that nobody has reserved for a row to come, are deleted after a grace time. That a
+//! Rows name what is wanted; blobs that no row names, and that nobody reserved for a row to come, are deleted after a grace time. That a
 //! blob is about to be deleted is noted under the lock under which it is looked whether it may be; deleted it is after that, for an object
 //! store may be slow. Nobody reserves it meanwhile, and no other collector deletes it: so a blob that a worker has found to exist cannot
 //! vanish behind its back, however many collect at once.
@@ -47,7 +47,7 @@ pub struct RetentionPolicy {
     pub blob_grace: Duration,
 }
 
-/// What was deleted, or would be.
+/// Deletions that were made, or would be.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Garbage {
     /// Sweeps whose time had come.
@@ -77,7 +77,7 @@ pub struct Collection {
     pub started: i64,
     /// When one ended last \[ms since the epoch\].
     pub ended: Option<i64>,
-    /// What that deleted, as [`Garbage::to_json`] writes it.
+    /// Deletions of that one, as [`Garbage::to_json`] writes them.
     pub deleted_json: Option<String>,
 }
 
@@ -230,7 +230,7 @@ impl Store {
         failure.map_or(Ok(deleted), Err)
     }
 
-    /// Those of some unfinished uploads that are of no blob that is reserved.
+    /// Unfinished uploads, of those given, that are of no reserved blob.
     async fn unreserved(&self, uploads: &[StoredObject]) -> Result<Vec<StoredObject>> {
         let mut found = Vec::new();
         for upload in uploads {

@@ -261,8 +261,8 @@ mod tests {
     use crate::database::Database;
     use crate::query::Statement;
 
-    /// What a plan may go through from end to end, because it is small: tables of a row, a parameter, an owner, a token, a worker
-    /// or a machine each, and indexes of the few rows that a statement looks for. So may it go through what it has selected
+    /// Tables and indexes that a plan may scan from end to end, because they are small: tables of a row, a parameter, an owner, a token,
+    /// a worker or a machine each, and indexes of the few rows that a statement looks for. A plan may also scan what it has selected
     /// itself.
     const SMALL: &[&str] = &[
         "CONSTANT",

@@ -46,7 +46,7 @@ pub struct Transition {
     pub from: WorkState,
     /// The state after.
     pub to: WorkState,
-    /// What brings it about.
+    /// Event that causes it.
     pub cause: &'static str,
 }
 

@@ -32,7 +32,7 @@ pub struct NewSweep {
     pub id: String,
     /// A name for people.
     pub name: Option<String>,
-    /// Whose share of the workers it counts against.
+    /// Owner, whose share of the workers it counts against.
     pub owner: String,
     /// The request as JSON.
     pub request_json: String,
@@ -40,7 +40,7 @@ pub struct NewSweep {
     pub priority: i64,
     /// Words to find it by, as a JSON array.
     pub tags_json: String,
-    /// What becomes of points whose result is known.
+    /// Policy for points whose result is known.
     pub cache: CachePolicy,
     /// The client's idempotency key with the hash of the request's body.
     pub idempotency_key: Option<(String, [u8; 32])>,
@@ -63,9 +63,9 @@ pub struct NewPoint {
     pub parameters_json: String,
     /// Content hash.
     pub work_key: WorkKey,
-    /// That of work whose result has all that this point asks for, and more: where it is there it is taken, and nothing computed.
+    /// Key of work whose result has all that this point requests, and more: if that result is there it is taken, and nothing computed.
     pub fuller_key: Option<WorkKey>,
-    /// What it changes in the base scenario, as a JSON object by path.
+    /// Changes to the base scenario, as a JSON object by path.
     pub changes_json: String,
 }
 
@@ -93,7 +93,7 @@ pub struct Addition<'a> {
     pub request_json: &'a str,
 }
 
-/// What becomes of points that were computed before.
+/// Policy for points that were computed before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CachePolicy {
     /// Their result is taken.
@@ -106,10 +106,10 @@ pub enum CachePolicy {
     Only,
 }
 
-/// What became of points that were added to a sweep.
+/// Outcome of adding points to a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AppendOutcome {
-    /// So many were added; the others it had already.
+    /// Number of points added; the sweep had the others already.
     Added(u64),
     /// The sweep would have so many points, which is too many; nothing is changed.
     TooMany(u64),
@@ -121,7 +121,7 @@ pub enum AppendOutcome {
     NoSuchSweep,
 }
 
-/// Whose work is inserted, and how.
+/// Sweep and owner whose work is inserted, and how.
 struct Wanted<'a> {
     sweep_id: &'a str,
     order: Order,
@@ -132,7 +132,7 @@ struct Wanted<'a> {
     is_paused: bool,
 }
 
-/// What a row of the table `point` is.
+/// Role of a row of the table `point`.
 #[derive(Clone, Copy)]
 enum Role {
     /// A point of the sweep.
@@ -141,7 +141,7 @@ enum Role {
     Verification,
 }
 
-/// What became of a submission.
+/// Outcome of a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SubmitOutcome {
     /// It is stored.

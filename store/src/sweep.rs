@@ -17,7 +17,7 @@ pub struct SweepRecord {
     pub id: String,
     /// A name for people.
     pub name: Option<String>,
-    /// Whose share of the workers it counts against.
+    /// Owner, whose share of the workers it counts against.
     pub owner: String,
     /// The request as JSON; empty where sweeps are read [without](Store::listed_sweeps) it.
     pub request_json: String,
@@ -305,7 +305,7 @@ impl Store {
     }
 }
 
-/// What became of a change.
+/// Outcome of a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChangeOutcome {
     /// It is made.
@@ -316,7 +316,7 @@ pub enum ChangeOutcome {
     NoSuchSweep,
 }
 
-/// What became of a deletion.
+/// Outcome of a deletion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeleteOutcome {
     /// It is deleted, or would be.
@@ -338,7 +338,7 @@ pub enum DeleteOutcome {
     NoSuchSweep,
 }
 
-/// What is changed of a sweep; what is absent stays.
+/// Changes to a sweep; absent fields stay as they are.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SweepChanges {
     /// Its name, or none any more.

@@ -11,7 +11,7 @@ const LAST_USED_STEP_MS: i64 = 3_600_000;
 /// Characters of a token's text.
 const SECRET_LENGTH: std::ops::RangeInclusive<usize> = 32..=200;
 
-/// What a token allows; each scope includes those before it.
+/// Permissions of a token; each scope includes those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TokenScope {
     /// Reading everything.
@@ -31,11 +31,11 @@ pub struct TokenSecret(String);
 pub struct NewToken<'a> {
     /// Its text.
     pub secret: &'a TokenSecret,
-    /// Whose sweeps are submitted with it.
+    /// Owner of the sweeps that are submitted with it.
     pub owner: &'a str,
     /// A name for people, such as the machine that it is for.
     pub name: Option<&'a str>,
-    /// What it allows.
+    /// Permissions.
     pub scope: TokenScope,
     /// How long it is valid \[ms\]; none means without end.
     pub lifetime_ms: Option<i64>,
@@ -46,11 +46,11 @@ pub struct NewToken<'a> {
 pub struct TokenRecord {
     /// Identifier; not secret.
     pub id: String,
-    /// Whose sweeps are submitted with it.
+    /// Owner of the sweeps that are submitted with it.
     pub owner: String,
     /// A name for people.
     pub name: Option<String>,
-    /// What it allows.
+    /// Permissions.
     pub scope: TokenScope,
     /// When it was made \[ms since the epoch\].
     pub created: i64,

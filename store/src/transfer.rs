@@ -20,7 +20,7 @@ use crate::error::StoreError;
 use crate::query::query;
 use crate::sql;
 
-/// What is carried, each table after those that it refers to.
+/// Tables that are carried over, each after those that it refers to.
 const TABLES: &[&str] = &[
     "scenario",
     "work",
@@ -37,7 +37,7 @@ const TABLES: &[&str] = &[
     "token",
 ];
 
-/// What is left behind: who works at the store, who has logged in, and which blobs are being written or deleted.
+/// Tables that are left behind: workers, sessions, and blobs that are being written or deleted.
 #[cfg(test)]
 const LEFT: &[&str] = &["removal", "session", "upload", "worker"];
 
@@ -71,11 +71,11 @@ pub enum TransferProgress {
     },
     /// The rows of a table are being copied.
     Rows(&'static str),
-    /// Those of the new store are being compared with those that they come from.
+    /// Rows of a table of the new store are being compared with those that they come from.
     Compared(&'static str),
 }
 
-/// What was carried over.
+/// Report of a transfer.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TransferReport {
     /// Rows by table.
@@ -119,7 +119,7 @@ pub enum TransferError {
         "the table {0} of the store is not as this version of the program has it: open the store by this version once, as `drillsweep serve` does"
     )]
     OtherSchema(&'static str),
-    /// What was written is not what was read.
+    /// The rows written are not those read.
     #[error("the table {0} of the new store is not that of the old one; nothing was kept of it")]
     Differs(&'static str),
     /// A database or an object store failed.

@@ -33,7 +33,7 @@ const CLOCK: &str = "DRILLSWEEP_TEST_CLOCK";
 const NAME: &str = "DRILLSWEEP_TEST_NAME";
 const HANG: &str = "DRILLSWEEP_TEST_HANG";
 
-/// What a worker tells when it waits to be killed.
+/// Line that a worker prints when it waits to be killed.
 const HANGS: &str = "hangs";
 
 fn main() {
@@ -139,7 +139,7 @@ fn start(directory: &Path, clock: i64, name: &str, kill: Kill) -> Child {
         .unwrap()
 }
 
-/// What came of a worker.
+/// Output and end of a worker.
 #[derive(Default)]
 struct Heard {
     told: Vec<String>,

@@ -1,4 +1,4 @@
-//! What can go wrong with tables.
+//! Errors of tables.
 
 use ::parquet::errors::ParquetError;
 
@@ -8,7 +8,7 @@ pub enum TableError {
     /// The bytes are not what this program writes, or cannot be encoded.
     #[error("parquet: {0}")]
     Parquet(#[from] ParquetError),
-    /// What it is written to does not take it.
+    /// The target does not take the table.
     #[error("the table cannot be written: {0}")]
     Sink(#[from] std::io::Error),
     /// Columns of different length.

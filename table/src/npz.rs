@@ -28,7 +28,7 @@ pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableEr
     Ok(tail.send()?)
 }
 
-/// What an archive can be written to.
+/// Target that an archive can be written to.
 trait Place: Write + Seek {}
 
 impl<T: Write + Seek> Place for T {}

@@ -12,7 +12,7 @@ use crate::quantity::unit;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Table {
-    /// What holds for the table as a whole, such as the node, its depth, or the number of samples.
+    /// Attributes of the table as a whole, such as the node, its depth, or the number of samples.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub attributes: IndexMap<String, Value>,
     /// The columns, by name.

@@ -115,10 +115,10 @@ enum Ended {
     Panicked(String),
 }
 
-/// Who asked a point to stop, besides the heartbeat.
+/// Reason to stop a point, other than the heartbeat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Halt {
-    /// Nobody.
+    /// None.
     No,
     /// The worker ends.
     Stop,
@@ -241,7 +241,7 @@ async fn stopped(stop: &mut watch::Receiver<bool>) {
     }
 }
 
-/// What the loop works with.
+/// Resources of the loop.
 struct Worker<'a> {
     config: &'a WorkerConfig,
     store: &'a Store,
@@ -492,7 +492,7 @@ fn too_large(scenario: &Scenario) -> Option<ComputeError> {
         .then_some(ComputeError::TooLarge { needed, limit: memory.limit })
 }
 
-/// What an earlier worker has done of a point. Without it the point starts from its beginning, which costs time and nothing else.
+/// Progress of an earlier worker on a point. Without it the point starts from its beginning, which costs time and nothing else.
 async fn read_suspended(store: &Store, blob: Option<BlobId>, scratch: &Path) -> Option<Suspended> {
     let blob = blob?;
     let read = async {

@@ -51,11 +51,11 @@ pub struct Computed {
     /// The verdict on the equilibrium: by all modes up to 20 Hz if the scenario requests it; otherwise only if the string leaves it without
     /// vibrating about it.
     pub stability: Option<Stability>,
-    /// The torsional modes that falling friction feeds; absent without a run in time, twist or friction that turns the string.
+    /// The torsional modes that velocity-weakening friction feeds; absent without a run in time, twist or friction that turns the string.
     pub undamped_torsion: Option<UndampedTorsion>,
     /// Errors by steps and by the mesh, and spread; absent without a run in time.
     pub errors: Option<ResultErrors>,
-    /// What was run that is probably not meant, in words.
+    /// Warnings about what was run but is probably not meant, in words.
     pub warnings: Vec<String>,
     /// Versions, integrator, steps and cost.
     pub provenance: Provenance,
@@ -96,7 +96,7 @@ pub enum ComputeError {
     /// The run in time failed, with whether the scenario's own instability explains it.
     #[error("{error}; {}", verdict(.error, .stability.as_deref()))]
     Run {
-        /// What was seen.
+        /// Observed failure.
         error: TransientError,
         /// The verdict of the linearised equations; absent where they could not be judged.
         stability: Option<Box<Stability>>,
@@ -104,15 +104,15 @@ pub enum ComputeError {
     /// A cost study has no reference to compare with.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// What is recorded cannot be written or read back.
+    /// Recordings cannot be written or read back.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
     /// It takes more memory than this worker may have.
     #[error("it takes about {:.1} GB of memory, and its worker may have {:.1} GB", *.needed as f64 / 1e9, *.limit as f64 / 1e9)]
     TooLarge {
-        /// What it takes \[bytes\].
+        /// Memory that it takes \[bytes\].
         needed: u64,
-        /// What the worker may have \[bytes\].
+        /// Memory that the worker may have \[bytes\].
         limit: u64,
     },
     /// Its thread cannot be started.

@@ -8,9 +8,9 @@ const NEARLY_FULL: f64 = 0.8;
 /// Memory of this process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Memory {
-    /// What it holds \[bytes\].
+    /// Resident memory \[bytes\].
     pub(crate) resident: u64,
-    /// What it may hold \[bytes\]: what the machine has, or what its control group allows.
+    /// Limit of it \[bytes\]: memory of the machine, or the limit of its control group if that is lower.
     pub(crate) limit: u64,
 }
 
@@ -25,7 +25,7 @@ impl Memory {
         Some(Self { resident, limit: machine.min(group) })
     }
 
-    /// What follows "the last worker" should this one be heard of no more; nothing where there is room.
+    /// Text that follows "the last worker" should this one be heard of no more; none if there is room.
     pub(crate) fn note(self) -> Option<String> {
         let Self { resident, limit } = self;
         (resident as f64 > NEARLY_FULL * limit as f64).then(|| {

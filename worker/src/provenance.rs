@@ -32,10 +32,10 @@ pub struct Provenance {
     /// Errors by steps and by the mesh, and spread.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors: Option<ResultErrors>,
-    /// The torsional modes that falling friction feeds.
+    /// The torsional modes that velocity-weakening friction feeds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undamped_torsion: Option<UndampedTorsion>,
-    /// What was run that is probably not meant, in words.
+    /// Warnings about what was run but is probably not meant, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The worker that computed it; none of a point that is computed without a queue.
@@ -46,7 +46,7 @@ pub struct Provenance {
 /// How a run in time was made.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunProvenance {
-    /// Method, step, tolerance and contact sweeps.
+    /// Method, step, tolerance and contact iterations.
     #[serde(flatten)]
     stepping: Stepping,
     /// Parts that a step of the scenario was cut into for stability.
@@ -61,15 +61,15 @@ pub struct RunProvenance {
     pub shortest_step: f64,
     /// Longest step taken \[s\].
     pub longest_step: f64,
-    /// Contact sweeps made.
+    /// Contact iterations made.
     sweeps: u64,
-    /// Largest change of a touching node's lateral displacement in the last sweep of any solve \[m\].
+    /// Largest change of a touching node's lateral displacement in the last iteration of any solve \[m\].
     sweep_largest_change: f64,
-    /// Solves whose sweeps had not converged.
+    /// Solves whose contact iterations had not converged.
     loose_solves: u64,
     /// Estimated error of the history.
     error_estimate: ErrorEstimate,
-    /// What that is an estimate of, for people.
+    /// Meaning of that estimate, for people.
     error_estimate_of: &'static str,
     /// Whether the run went on from a checkpoint.
     resumed: bool,
@@ -79,7 +79,7 @@ pub struct RunProvenance {
     pub transient_cpu_time: f64,
 }
 
-/// What of the stepping is told.
+/// Reported part of the stepping.
 #[derive(Debug, Clone, Serialize)]
 struct Stepping {
     integrator: drillsweep_scenario::Integrator,
@@ -88,7 +88,7 @@ struct Stepping {
     contact_sweeps: u32,
 }
 
-/// Who computed a result, and when.
+/// Worker that computed a result, and when.
 #[derive(Debug, Clone, Serialize)]
 pub struct WorkerProvenance {
     /// The machine.
@@ -103,12 +103,12 @@ pub struct WorkerProvenance {
     pub ended: Timestamp,
 }
 
-/// What the error estimate is an estimate of, for people.
+/// Meaning of the error estimate, for people.
 const ERROR_ESTIMATE_OF: &str = "root mean square error of a lateral displacement over all nodes at the end of the run, \
                                  as long as histories do not part: displacement [m], and relative to the motion";
 
 impl RunProvenance {
-    /// That of a finished run, which may have been resumed, with its time by the clock and its processor time \[s\].
+    /// Provenance of a finished run, which may have been resumed, with its time by the clock and its processor time \[s\].
     pub(crate) fn new<H>(records: &Records<H>, resumed: bool, (wall_time, cpu_time): (f64, f64)) -> Self {
         let effort = &records.effort;
         let TimeStepping { integrator, step, tolerance, contact_sweeps, .. } = effort.stepping;

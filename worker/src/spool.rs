@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Bytes of a sample.
 const SAMPLE: usize = size_of::<f64>();
 
-/// What is kept of the bit beside the nodes.
+/// Series of the bit that are kept with those of the nodes.
 const OF_BIT: [Series; 2] = [Series::ThetaZRate, Series::Torque];
 
 /// Bytes of a value of a snapshot.
@@ -214,7 +214,7 @@ impl Spool {
     }
 }
 
-/// What of a range lies in a block, counted from the block's beginning.
+/// Part of a range that lies in a block, counted from the block's beginning.
 fn overlap(range: &Range<usize>, block: &Range<usize>) -> Range<usize> {
     let within = |end: usize| end.clamp(block.start, block.end) - block.start;
     within(range.start)..within(range.end)

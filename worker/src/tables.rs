@@ -1,4 +1,4 @@
-//! What a point's result becomes: tables for the object store, and one flat row for the sweep's table.
+//! Forms of a point's result: tables for the object store, and one flat row for the sweep's table.
 
 use std::borrow::Cow;
 use std::ops::Range;

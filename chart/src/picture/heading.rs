@@ -1,4 +1,4 @@
-//! What stands above a plot: its title, and which line is which.
+//! Heading of a plot: its title, and which line is which.
 
 use super::{
     drawing::{Colour, Rectangle, Shape, Stroke},
@@ -17,7 +17,7 @@ const LEGEND_ROW: f64 = 22.0;
 /// The length of the sample of a series' line in the legend.
 const LEGEND_LINE: f64 = 30.0;
 
-/// What the legend names.
+/// Entry of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
     name: String,
@@ -109,7 +109,7 @@ pub(super) fn legend(
     middle + LEGEND_ROW / 2.0
 }
 
-/// What stands in a plot that has nothing to show.
+/// Text in a plot that has nothing to show.
 pub(super) fn no_data(middle: [f64; 2]) -> Shape {
     Shape::Text(Text::new("no data", middle, Anchor::Middle, TITLE_SIZE, Colour::QUIET_TEXT))
 }

@@ -3,16 +3,16 @@
 use super::drawing::{Colour, Position, Rectangle, Shape};
 use super::text::{Anchor, Text};
 
-/// What a line under a label costs, in ranks of candidates.
+/// Cost of a line under a label, in ranks of candidates.
 const CROSSING: usize = 20;
 
 /// A plot area in which labels find their places.
 #[derive(Debug)]
 pub(super) struct LabelRoom {
     bounds: Rectangle,
-    /// What no label may cover.
+    /// Areas that no label may cover.
     taken: Vec<Rectangle>,
-    /// What labels had better not cover.
+    /// Lines that labels had better not cover.
     lines: Vec<[Position; 2]>,
 }
 

@@ -36,19 +36,19 @@ pub struct LinePlot {
     pub title: String,
     /// A line of smaller text below it; may be empty.
     pub subtitle: String,
-    /// What is across, with its unit.
+    /// Quantity across, with its unit.
     pub x_label: String,
-    /// What is vertical, with its unit.
+    /// Quantity vertical, with its unit.
     pub y_label: String,
     /// The lines, in the order of the legend. A single line without a name has no legend.
     pub lines: Vec<Line>,
     /// Points of the lines whose values cannot be trusted: they get crosses.
     pub crosses: Vec<[f64; 2]>,
-    /// What the vertical axis shows.
+    /// Kind of values on the vertical axis.
     pub vertical: VerticalAxis,
     /// Places that are named, the most important first; those that find no room are left out.
     pub labels: Vec<Label>,
-    /// What is shaded behind the lines.
+    /// Part shaded behind the lines.
     pub shade: Option<Shade>,
 }
 
@@ -57,11 +57,11 @@ pub struct LinePlot {
 pub struct Shade {
     /// The value; not negative.
     pub beyond: f64,
-    /// What stands in the legend for it.
+    /// Its name in the legend.
     pub name: String,
 }
 
-/// What the vertical axis of a [`LinePlot`] shows.
+/// Kind of values on the vertical axis of a [`LinePlot`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VerticalAxis {
     /// Values, growing upwards.
@@ -89,7 +89,7 @@ pub struct Line {
 pub struct Label {
     /// Where, across and vertical.
     pub at: [f64; 2],
-    /// What is written there.
+    /// Text written there.
     pub text: String,
 }
 

@@ -193,7 +193,7 @@ impl OrbitPlot {
 
 /// The parts of the wall's circle that a view holds.
 fn arcs(wall: f64, view: View) -> Vec<Vec<Position>> {
-    /// So many sides make a circle round at any magnification that is drawn.
+    /// Number of sides that makes a circle round at any magnification that is drawn.
     const MOST_SIDES: f64 = 1e6;
     let magnification = (wall.abs() / view.half).clamp(1.0, MOST_SIDES / CIRCLE_SIDES as f64);
     let sides = CIRCLE_SIDES * magnification.ceil() as usize;

@@ -58,7 +58,7 @@ pub struct SweepMap {
     pub x_label: String,
     /// The parameter vertical, with its unit.
     pub y_label: String,
-    /// What the colours mean, with its unit.
+    /// Quantity that the colours show, with its unit.
     pub value_label: String,
     /// The points.
     pub points: Vec<MapPoint>,
@@ -164,7 +164,7 @@ impl SweepMap {
         self.words.iter().take(KINDS).enumerate().map(word).chain(none).collect()
     }
 
-    /// What the colours mean, at the right of the plot.
+    /// Scale of the colours, at the right of the plot.
     fn scale(&self, area: &Rectangle, axis: &PlotAxis) -> Shape {
         let bar = Rectangle { left: area.right + 22.0, right: area.right + 22.0 + SCALE_WIDTH, ..*area };
         let step = bar.height() / SCALE_STEPS as f64;
@@ -195,7 +195,7 @@ impl SweepMap {
     }
 }
 
-/// What values look like.
+/// Colours of values.
 enum Colours<'m> {
     Numbers(PlotAxis),
     Words(&'m [String]),

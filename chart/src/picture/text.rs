@@ -40,7 +40,7 @@ pub(super) enum Weight {
 pub(super) const RAISED_SIZE: f64 = 0.68;
 pub(super) const RAISED_RISE: f64 = 0.36;
 
-/// What the built-in font says of the widths of its glyphs.
+/// Widths of glyphs in the built-in font.
 struct Metrics {
     charmap: Charmap<'static>,
     glyphs: GlyphMetrics<'static>,

@@ -28,9 +28,9 @@ const MAX_LABELS: usize = 400;
 pub struct WorkPrecisionChart {
     /// The title; may be empty.
     pub title: String,
-    /// What is across, with its unit, such as "CPU seconds per simulated second".
+    /// Quantity across, with its unit, such as "CPU seconds per simulated second".
     pub x_label: String,
-    /// What is vertical, with its unit, such as "relative error".
+    /// Quantity vertical, with its unit, such as "relative error".
     pub y_label: String,
     /// The accuracy that is wanted, drawn as a dashed line from left to right.
     pub wanted: Option<WantedAccuracy>,
@@ -43,11 +43,11 @@ pub struct WorkPrecisionChart {
 pub struct WantedAccuracy {
     /// The error, in the unit of the vertical axis.
     pub y: f64,
-    /// What is written at the line, such as "wanted: 1 %".
+    /// Text at the line, such as "wanted: 1 %".
     pub label: String,
 }
 
-/// What one method reaches at what cost.
+/// Errors that one method reaches, each at its cost.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
     /// The method's name in the legend.
@@ -63,7 +63,7 @@ pub struct Point {
     pub x: f64,
     /// The error, in the unit of the vertical axis.
     pub y: f64,
-    /// What is written beside the point, such as the time step "1 ms"; nothing if empty.
+    /// Text next to the point, such as the time step "1 ms"; nothing if empty.
     pub label: String,
 }
 

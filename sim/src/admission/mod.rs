@@ -1,4 +1,4 @@
-//! What can be simulated: every rule that a scenario must keep, checked all at once.
+//! Admission of scenarios to simulation: every rule that a scenario must keep, checked all at once.
 
 mod hole;
 mod loads;

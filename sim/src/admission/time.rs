@@ -23,7 +23,7 @@ const MOST_SAMPLES_OF_NODES: f64 = (1_u64 << 26) as f64;
 /// Spectrum windows at most.
 const MOST_WINDOWS: usize = 100;
 
-/// Generalized-alpha's largest spectral radius at infinity that two contact sweeps are known to be safe with
+/// Generalized-alpha's largest spectral radius at infinity that two contact iterations are known to be safe with
 /// (docs/model/motion.md, Generalized-alpha).
 const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
 

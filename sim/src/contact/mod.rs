@@ -33,7 +33,7 @@ pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, st
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;
 
-/// What contact needs to know of a node.
+/// Contact data of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactNode<L> {
     /// Radial clearance j0 \[m\].

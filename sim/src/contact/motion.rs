@@ -19,7 +19,7 @@ pub struct LateralMotion<L> {
     pub theta_z_rate: L,
 }
 
-/// What the wall does to a node; all zero where it does not touch.
+/// Action of the wall on a node; all zero if it does not touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactForce<L> {
     /// Force along u \[N\].

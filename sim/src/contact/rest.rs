@@ -3,7 +3,7 @@
 use super::ContactNode;
 use super::law::ContactParameters;
 
-/// What the wall does to a node at rest, and how that changes; all zero where it does not touch.
+/// Action of the wall on a node at rest, and how that changes; all zero if it does not touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StaticContactForce {
     /// Force along u \[N\].

@@ -16,7 +16,7 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// That of a law, with what contact needs to know of every node, or nothing where a node is no contact site: a held one.
+    /// The wall of a law, with the contact data of every node, or nothing for a node that is no contact site: a held one.
     /// Without contact no node is one. `segments` are all elements from the top if stiffness belongs to a length, and none otherwise.
     pub fn new(
         law: &ContactLaw,

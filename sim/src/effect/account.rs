@@ -13,7 +13,7 @@ pub struct Account {
     /// Whether it holds what the drive passes straight on to steady sliding: such accounts count by their balance alone in the energy that
     /// the vibration turns over.
     pub is_passed_on: bool,
-    /// What it comes to by what is booked \[J\].
+    /// Its value by what is booked \[J\].
     pub(crate) value: fn(&Booked) -> f64,
 }
 
@@ -28,7 +28,7 @@ pub enum Side {
     Beside,
 }
 
-/// What the ledger has booked since the start of a run, as an account sees it \[J\].
+/// Energies that the ledger has booked since the start of a run, as an account sees them \[J\].
 #[derive(Debug, Clone, Copy)]
 pub struct Booked {
     /// Work of the nodal forces.

@@ -15,7 +15,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct EffectDecision {
     /// The effect.
     pub effect: Effect,
-    /// What the scenario says of it.
+    /// Its switch in the scenario.
     pub switch: Switch,
     /// Whether it takes part.
     pub active: bool,

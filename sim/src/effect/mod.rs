@@ -71,23 +71,23 @@ pub(crate) fn place_of_damping(account: Option<&Account>) -> usize {
     place.unwrap_or_else(|| panic!("the account {name:?} is not among those of damping"))
 }
 
-/// What an effect brings.
+/// Contributions of an effect.
 #[derive(Clone, Copy)]
 pub(crate) struct Room {
     /// Whether a scene calls for it, and why.
     called_for: fn(&Scene<'_>) -> Call,
     /// By what share of itself it changes the frequency of a lateral wave; absent where no such estimate is made.
     frequency_change: Option<fn(&LateralWave) -> f64>,
-    /// What it adds to an element, whatever the equilibrium.
+    /// Adds its terms to an element, whatever the equilibrium.
     at_rest: Option<fn(&ElementAtRest<'_>, &mut RestTerms)>,
-    /// What it adds to the motion of an element about the equilibrium.
+    /// Adds its terms to the motion of an element about the equilibrium.
     in_motion: Option<fn(&ElementInMotion<'_>, &mut MotionTerms)>,
     /// The degree of freedom of a node that moves only with this effect.
     moves: Option<usize>,
 }
 
 impl Room {
-    /// That of an effect that is no more than when it is called for.
+    /// Room of an effect that is no more than when it is called for.
     const fn new(called_for: fn(&Scene<'_>) -> Call) -> Self {
         Self { called_for, frequency_change: None, at_rest: None, in_motion: None, moves: None }
     }

@@ -1,4 +1,4 @@
-//! What a scene has that effects are called for by.
+//! Properties of a scene that call for effects.
 
 use std::f64::consts::PI;
 
@@ -51,12 +51,12 @@ impl Scene<'_> {
     }
 }
 
-/// What calls for an effect of mud, wherever it is.
+/// Call for an effect of mud, wherever it is.
 pub(super) fn has_mud(scene: &Scene<'_>) -> Call {
     if scene.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
 }
 
-/// What calls for an effect of flowing mud.
+/// Call for an effect of flowing mud.
 pub(super) fn has_flow(scene: &Scene<'_>) -> Call {
     match &scene.scenario.mud {
         None => no("the hole is dry"),
@@ -65,7 +65,7 @@ pub(super) fn has_flow(scene: &Scene<'_>) -> Call {
     }
 }
 
-/// What calls for friction at the wall.
+/// Call for friction at the wall.
 pub(super) fn has_friction(scene: &Scene<'_>) -> Call {
     let law = &scene.scenario.contact;
     match (scene.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {

@@ -1,4 +1,4 @@
-//! What effects add to an element.
+//! Terms that effects add to an element.
 
 use drillsweep_scenario::{Mud, RayleighDamping};
 use nalgebra::Vector3;
@@ -26,7 +26,7 @@ pub struct ElementAtRest<'a> {
     pub ends_at_bit: bool,
 }
 
-/// What effects add to an element at rest, in the chord frame.
+/// Terms that effects add to an element at rest, in the chord frame.
 #[derive(Debug, Clone)]
 pub struct RestTerms {
     /// Weight over gravity, of steel and whatever hangs on it \[kg/m\].
@@ -44,7 +44,7 @@ pub struct RestTerms {
 }
 
 impl RestTerms {
-    /// Those of an element of so much mass and nothing else \[kg/m\].
+    /// Terms of an element of so much mass and nothing else \[kg/m\].
     pub(crate) fn of_mass(mass_per_length: f64) -> Self {
         Self {
             mass_per_length,
@@ -79,12 +79,12 @@ pub struct ElementInMotion<'a> {
     pub flow: Option<&'a ElementFlow>,
 }
 
-/// What effects add to the motion of an element, over nodal values.
+/// Terms that effects add to the motion of an element, over nodal values.
 #[derive(Debug, Clone, Default)]
 pub struct MotionTerms {
     /// Mass besides the structure's.
     pub mass: Option<ElementMatrix>,
-    /// What multiplies velocities, by the account of its work, in the order of [`DAMPING`].
+    /// Matrices that multiply velocities, by the account of their work, in the order of [`DAMPING`].
     pub damping: [Option<ElementMatrix>; DAMPING.len()],
 }
 

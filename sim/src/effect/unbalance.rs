@@ -35,7 +35,7 @@ pub struct UnbalanceForce {
     pub phase: f64,
 }
 
-/// Those of a string's nodes at a speed of rotation \[rad/s\].
+/// Unbalance forces of a string's nodes at a speed of rotation \[rad/s\].
 pub(crate) fn forces(nodes: &[MeshNode], rotation_speed: f64) -> Vec<UnbalanceForce> {
     let omega2 = rotation_speed * rotation_speed;
     let masses =

@@ -39,7 +39,7 @@ struct Chain<const D: usize = DOFS> {
     inward: Vec<SplitBlock<D>>,
 }
 
-/// What eliminating a row leaves for the way inwards; S is its pivot block.
+/// Blocks that eliminating a row leaves for the way inwards; S is its pivot block.
 #[derive(Debug, Clone, Copy)]
 struct Elimination<const D: usize = DOFS> {
     /// `S^-1`.

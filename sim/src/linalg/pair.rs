@@ -26,10 +26,10 @@ pub struct MatrixPair<A, const D: usize = DOFS> {
 
 /// How a matrix is kept, four block rows at a time, and multiplied.
 pub trait Storage<const D: usize> {
-    /// What the rows before leave for these.
+    /// Contribution of the rows before to these.
     type Carried: Copy;
 
-    /// What is carried into the first rows.
+    /// Contribution carried into the first rows.
     const NOTHING: Self::Carried;
 
     /// Number of entries of four block rows.

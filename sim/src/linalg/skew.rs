@@ -33,7 +33,7 @@ struct Rows {
 pub type WeightedPair<'a, const D: usize> = (f64, &'a NodalField<D>, &'a NodalField<D>);
 
 impl<const D: usize> SkewPart<D> {
-    /// That of `m`, without entries up to `threshold`: rounding of terms that cancel.
+    /// Skew part of `m`, without entries up to `threshold`: rounding of terms that cancel.
     pub fn new(m: &BlockTridiagonal<D>, threshold: f64) -> Self {
         let rows = m.rows();
         let half_difference = |a: &Block<D>, b: &Block<D>, i: usize, j: usize| {

@@ -25,7 +25,7 @@ struct SplitSum {
 }
 
 impl<const D: usize> SplitBlock<D> {
-    /// That of a block.
+    /// Splits a block.
     pub(super) fn new(block: &Block<D>) -> Self {
         let at = |row: usize, column: usize| {
             if row < D && column < D { block[(row, column)] } else { 0.0 }

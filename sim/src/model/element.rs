@@ -44,7 +44,7 @@ pub struct StringElement {
     pub unit_drag: ElementVector,
 }
 
-/// What an element is made from.
+/// Inputs of an element.
 pub struct ElementInput<'a> {
     /// Cross-section.
     pub section: BeamSection,

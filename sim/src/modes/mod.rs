@@ -79,9 +79,9 @@ pub struct Modes {
 pub enum Completeness {
     /// As many were found as there are.
     Counted,
-    /// So many were not found, conjugate ones and overdamped motions included where the band begins at 0 Hz.
+    /// Number of eigenvalues not found, conjugate ones and overdamped motions included if the band begins at 0 Hz.
     Missing(usize),
-    /// So many more were found than there are: some are not modes.
+    /// Number of eigenvalues found beyond those there are: some are not modes.
     Excess(usize),
     /// They could not be counted.
     NotCounted,
@@ -106,7 +106,7 @@ pub struct Mode {
     pub frequency_hz: f64,
     /// Growth of its amplitude \[1/s\]; negative is decay.
     pub growth_rate: f64,
-    /// What moves most.
+    /// Its main motion.
     pub kind: ModeKind,
     /// Share of the kinetic energy in lateral motion, 0 to 1.
     pub lateral_share: f64,
@@ -124,7 +124,7 @@ pub struct Mode {
     pub extent: [f64; 2],
 }
 
-/// What moves most in a mode.
+/// Main motion of a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

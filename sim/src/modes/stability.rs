@@ -44,7 +44,7 @@ pub struct Stability {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Instability {
-    /// What it is.
+    /// Its kind.
     pub kind: InstabilityKind,
     /// Growth of its amplitude \[1/s\].
     pub growth_rate: f64,
@@ -244,7 +244,7 @@ fn does_not_vibrate(pair: &Eigenpair) -> bool {
     pair.value.im < pair.value.re
 }
 
-/// What puts most energy into a growing mode decides its kind.
+/// Kind of a growing mode, by what puts most energy into it.
 fn kind(
     model: &Model,
     equilibrium: &Equilibrium,

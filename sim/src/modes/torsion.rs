@@ -1,4 +1,4 @@
-//! Which torsional modes falling friction feeds, and whether damping ends that before the mesh does.
+//! Which torsional modes velocity-weakening friction feeds, and whether damping ends that before the mesh does.
 //!
 //! Friction that falls with speed is a negative damper at every node that slides. It feeds torsion at all frequencies alike; only a
 //! damping that grows with frequency (`damping.stiffness_proportional`) ends it. Without one, modes grow up to the highest frequency of
@@ -31,7 +31,7 @@ const MESH_END: f64 = 0.75;
 /// Steps in a period with which the reference resolves a mode: no method here damps it as fast as friction feeds it.
 const STEPS_OF_A_PERIOD: f64 = 20.0;
 
-/// The torsional modes that falling friction feeds, to first order in damping.
+/// The torsional modes that velocity-weakening friction feeds, to first order in damping.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct UndampedTorsion {
@@ -137,7 +137,7 @@ struct Chain {
     stiffness: Vec<f64>,
     /// Stiffness between a node and the next (negative).
     stiffness_to_next: Vec<f64>,
-    /// What sliding friction adds to damping at each node \[N m s\]; negative where it feeds.
+    /// Damping added by sliding friction at each node \[N m s\]; negative where it feeds.
     rubbing: Vec<f64>,
     /// alpha \[1/s\] and beta \[s\] of Rayleigh damping.
     rayleigh: [f64; 2],

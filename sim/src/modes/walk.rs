@@ -33,7 +33,7 @@ const MOST_HALVINGS: u32 = 6;
 /// How far beyond the band its edge may lie, in the radius in which eigenvalues are known: next to the edge there should be none.
 const MARGIN: f64 = 0.3;
 
-/// What a walk over a band has found.
+/// Findings of a walk over a band.
 pub(super) struct Found {
     /// All that are known, in the band and beyond, by frequency; those of negative frequency are their conjugates.
     pairs: Vec<Eigenpair>,
@@ -41,7 +41,7 @@ pub(super) struct Found {
     pub(super) complete_to: f64,
     /// Growth and decay up to which it looked \[1/s\].
     pub(super) rate: f64,
-    /// What the count says of that.
+    /// Verdict of the count on that.
     pub(super) completeness: Completeness,
 }
 

@@ -1,4 +1,4 @@
-//! What the mud does to lateral motion.
+//! Damping and added mass of lateral motion by the mud.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -73,7 +73,7 @@ pub struct FlowGeometry {
 }
 
 impl FlowGeometry {
-    /// That of a string's section in a hole \[m\].
+    /// Geometry of the flow past a string's section in a hole \[m\].
     pub fn past(section: &BeamSection, hole_diameter: f64) -> Self {
         Self { hole_diameter, outer_diameter: section.outer_diameter, inner_diameter: section.inner_diameter }
     }
@@ -112,7 +112,7 @@ pub fn element_flow(
     SectionFlow::new(mud, geometry, rotation_speed)?.at_eccentricity(eccentricity)
 }
 
-/// What a cross-section decides about its flow, wherever the pipe lies in the hole.
+/// Flow past a cross-section, as far as it does not depend on where the pipe lies in the hole.
 ///
 /// All elements of the same diameters share it: the equations that need iteration are solved here, once.
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! What keeps mud from being computed.
+//! Errors in the computation of mud.
 
 /// A mud or a cross-section whose flow cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,7 +2,7 @@
 
 use super::rheology::Rheology;
 
-/// What the walls see of a laminar flow.
+/// A laminar flow as its walls see it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LaminarFlow {
     /// tau_w \[Pa\].

@@ -1,4 +1,4 @@
-//! What the two flows past a section carry along: mass, momentum, and the annulus' added mass.
+//! Mass and momentum that the two flows past a section carry along, and the annulus' added mass.
 
 use drillsweep_scenario::Mud;
 

@@ -4,7 +4,7 @@ use drillsweep_scenario::Mud;
 
 use super::error::{MudError, check};
 
-/// What one element adds to the pressures.
+/// Contribution of one element to the pressures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PressureStep {
     /// Length along the hole \[m\].

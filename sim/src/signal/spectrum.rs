@@ -46,7 +46,7 @@ pub enum Whirl {
     Offset,
 }
 
-/// What lines are looked for.
+/// Criteria of a search for lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakSearch {
     /// At most so many, the highest first.

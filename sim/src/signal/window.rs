@@ -42,8 +42,8 @@ impl Window {
         offset.clamp(0.0, 0.5)
     }
 
-    /// What of a line's amplitude its highest bin shows, at an `offset` of 0 to 1/2 bins: the transform of the window's weights over
-    /// its value on the bin, for a lone line in a long window (Harris 1978). Down to 0.64 without window, 0.85 with Hann's.
+    /// Part of a line's amplitude that its highest bin shows, at an `offset` of 0 to 1/2 bins: the transform of the window's weights
+    /// over its value on the bin, for a lone line in a long window (Harris 1978). Down to 0.64 without window, 0.85 with Hann's.
     pub(super) fn line_height(self, offset: f64) -> f64 {
         let run = PI * offset;
         let sinc = if run == 0.0 { 1.0 } else { run.sin() / run };

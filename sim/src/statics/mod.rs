@@ -62,11 +62,11 @@ pub struct Equilibrium {
     pub drag: Vec<f64>,
     /// Pressures of the mud at every node; absent without mud.
     pub pressures: Option<Pressures>,
-    /// What it took.
+    /// Effort of the search.
     pub effort: StaticsEffort,
 }
 
-/// What an equilibrium took to find.
+/// Effort of finding an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticsEffort {
     /// Newton iterations in all.
@@ -103,7 +103,7 @@ pub enum StaticsError {
     Mud {
         /// Upper node of the first element where that shows, from 1.
         node: usize,
-        /// What is wrong with it.
+        /// Error in its computation.
         error: MudError,
     },
     /// The iteration between equilibrium and hydraulics did not converge.

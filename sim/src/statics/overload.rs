@@ -61,7 +61,7 @@ impl fmt::Display for Overload {
     }
 }
 
-/// What a failed search says about the physics.
+/// Verdict of a failed search on the physics, in words.
 pub(super) fn verdict(overload: Option<&Overload>) -> String {
     overload.map_or_else(
         || "the string is not shown to be unstable: the search itself failed".to_owned(),

@@ -23,7 +23,7 @@ const MOST_CORRECTIONS: usize = 10;
 /// Last correction at which it has, in the largest displacement (or 1 m, 1 rad), and of the share.
 const ON_THE_PATH: f64 = 1e-8;
 
-/// What grows along a path from nothing, at s = 0, to the whole of it, at s = 1.
+/// Quantity that grows along a path from nothing, at s = 0, to the whole of it, at s = 1.
 pub(super) trait Growth {
     /// Unbalanced forces at a point, their tangent, and their derivative by the share; `None` where there are none.
     fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)>;

@@ -51,7 +51,7 @@ pub enum MeshError {
     },
 }
 
-/// What an element is a part of.
+/// Part of the string that an element belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ElementKind {
     /// Body of a drillpipe.
@@ -73,13 +73,13 @@ pub struct MeshElement {
     pub top: f64,
     /// Length along the hole \[m\].
     pub length: f64,
-    /// What it is a part of.
+    /// Part of the string that it belongs to.
     pub kind: ElementKind,
     /// Outer diameter of the body D_o \[m\].
     pub outer_diameter: f64,
     /// Inner diameter of the body D_i \[m\].
     pub inner_diameter: f64,
-    /// What it is made of.
+    /// Its material.
     pub material: Material,
 }
 
@@ -114,7 +114,7 @@ pub struct MeshNode {
 }
 
 impl MeshNode {
-    /// What contact needs to know of the node.
+    /// Contact data of the node.
     pub fn site(&self) -> ContactNode<f64> {
         ContactNode {
             clearance: self.clearance,

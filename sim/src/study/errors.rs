@@ -110,7 +110,7 @@ pub enum SpreadError {
 /// A member of an ensemble beside the undisturbed run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherMember {
-    /// What it showed.
+    /// Its summary.
     pub summary: TransientSummary,
     /// Root mean square distance from the undisturbed run over the orbit window, of each recorded node \[m\].
     pub distances: Vec<f64>,

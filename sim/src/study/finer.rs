@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::statics::Equilibrium;
 use crate::transient::{Outcome, SMALLEST_MOTION, Transient};
 
-/// What a finer step says.
+/// Verdict of a finer step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// The same, within what is promised; with the difference that comes nearest to that.
@@ -48,7 +48,7 @@ pub struct Difference {
     pub values: [f64; 2],
     /// Their difference over the finer run's value, or over what counts as rest where that is more.
     pub relative: f64,
-    /// What is promised.
+    /// Largest difference that is promised.
     pub allowed: f64,
 }
 
@@ -59,8 +59,8 @@ impl Difference {
     }
 }
 
-/// What is asked of an accuracy here: what it promises; of `esdirk4` with a tolerance, what that tolerance promises elsewhere; and of other
-/// steps, which promise nothing, what `standard` does.
+/// Promise to which an accuracy is held here: its own; of `esdirk4` with a tolerance, that of this tolerance elsewhere; and of other
+/// steps, which promise nothing, that of `standard`.
 pub fn asked_of(accuracy: &Accuracy) -> Promise {
     let stepping = accuracy.time_stepping();
     let tolerance = stepping.tolerance.filter(|_| stepping.integrator == Integrator::Esdirk4);
@@ -111,7 +111,7 @@ pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Co
     }
 }
 
-/// What a run of the model with another stepping, as a member of its ensemble, leaves; nothing where it was cancelled.
+/// Measure of a run of the model with another stepping, as a member of its ensemble; nothing if it was cancelled.
 fn measure(
     model: &Model,
     equilibrium: &Equilibrium,

@@ -1,4 +1,4 @@
-//! What a scenario takes of memory and storage, without running it.
+//! Memory and storage that a scenario takes, without running it.
 
 use drillsweep_scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use serde::Serialize;
@@ -36,7 +36,7 @@ const ROW_GROUP: u64 = 10_000;
 /// makes.
 const HISTORY_COLUMNS: u64 = Series::ALL.len() as u64 + 1;
 
-/// Those of the bit where it is recorded beside the nodes: rotation speed and torque.
+/// Columns of the bit if it is recorded with the nodes: rotation speed and torque.
 const BIT_COLUMNS: u64 = 2;
 
 /// Rows of the table `course` a second at most.
@@ -81,7 +81,7 @@ impl Footprint {
     }
 }
 
-/// What of a run grows with its duration.
+/// Counts of a run that grow with its duration.
 struct Recorded {
     nodes: u64,
     /// Series of the bit, where it is recorded beside them.

@@ -1,4 +1,4 @@
-//! What is made of runs: plans before them, summaries and errors after them, studies of several.
+//! Plans before runs, summaries and errors after them, studies of several.
 
 pub mod cost;
 pub mod ensemble;

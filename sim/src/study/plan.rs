@@ -1,4 +1,4 @@
-//! What a scenario will take, without running it: the effects in play and why, the size of the problem, steps and
+//! Forecast of a scenario, without running it: the effects in play and why, the size of the problem, steps and
 //! processor time at each accuracy.
 
 use drillsweep_scenario::{
@@ -46,12 +46,12 @@ pub struct Plan {
     pub statics_cpu_time: Option<f64>,
     /// The scenario's own accuracy first, then the named ones, without a cost study; none where there is no run in time.
     pub accuracies: Vec<PlannedAccuracy>,
-    /// What is run in place of that where the scenario has a `cost_study`; absent also where the study has no runs because the scenario
+    /// Study that is run in place of that if the scenario has a `cost_study`; absent also if the study has no runs because the scenario
     /// has no equilibrium.
     pub study: Option<PlannedStudy>,
     #[serde(skip)]
     is_study: bool,
-    /// The torsional modes that falling friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
+    /// The torsional modes that velocity-weakening friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
     /// there is no run in time, twist takes no part or friction does not turn the string.
     pub undamped_torsion: Option<UndampedTorsion>,
     /// Torque at the top \[N m\] at break-away, friction mu_s at every node that touches; absent as `mesh_error`, or if that equilibrium was
@@ -61,11 +61,11 @@ pub struct Plan {
     pub torque_top_rotating: Option<f64>,
     /// The mesh's part of the error of the equilibrium; absent where [`Plan::with_equilibrium`] was not asked or there is none.
     pub mesh_error: Option<MeshEstimate>,
-    /// What the equilibrium shows that can be simulated but is probably not meant, in words.
+    /// Properties of the equilibrium that can be simulated but are probably not meant, in words.
     pub warnings: Vec<String>,
 }
 
-/// What one accuracy takes.
+/// Size and cost of one accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PlannedAccuracy {
@@ -89,7 +89,7 @@ pub struct PlannedAccuracy {
     pub least_cpu_time: Option<f64>,
 }
 
-/// What a cost study takes.
+/// Runs and cost of a cost study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PlannedStudy {
@@ -110,9 +110,9 @@ pub struct PlannedStudy {
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,
-    /// What a run does before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
+    /// Time of a run before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
     pub start_per_node: [f64; 4],
-    /// Steps of generalized-alpha, ESDIRK4 with two contact sweeps, ESDIRK4 with sweeps until they have converged, and RK4: for each
+    /// Steps of generalized-alpha, ESDIRK4 with two contact iterations, ESDIRK4 with sweeps until they have converged, and RK4: for each
     /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
     /// Time of a node's step on a mesh of five times as many nodes, which no longer fits the inner caches, over that of the 200 m case.
@@ -140,7 +140,7 @@ const CONVERGED_SWEEPS: u32 = 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MethodKind {
     GeneralizedAlpha,
-    /// Two contact sweeps a stage.
+    /// Two contact iterations a stage.
     Esdirk4,
     /// Contact sweeps until they have converged.
     Esdirk4Converged,
@@ -150,7 +150,7 @@ enum MethodKind {
 /// A short run whose steps are timed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrationRun {
-    /// What to simulate.
+    /// Scenario to simulate.
     pub scenario: Scenario,
     method: usize,
     degrees_of_freedom: usize,

@@ -49,7 +49,7 @@ pub enum SceneEnd {
     },
     /// Against the contract: a number is not finite, the ledger is out of its bound, or a scene as drawn was refused.
     Broken {
-        /// What is wrong.
+        /// Breach of the contract.
         reason: String,
     },
     /// It was cancelled.
@@ -64,7 +64,7 @@ pub fn run(scenario: &Scenario, control: &Control) -> SceneEnd {
     }
 }
 
-/// What is known of the steps of a result.
+/// Findings about the steps of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refined {
     /// Whether a finer step confirms the result.

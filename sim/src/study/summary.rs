@@ -45,7 +45,7 @@ pub struct StaticsSummary {
     pub rotation_damping_range: Option<[f64; 2]>,
 }
 
-/// What the run in time showed.
+/// Results of the run in time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TransientSummary {
     /// Length of the run \[s\].

@@ -4,16 +4,16 @@ use drillsweep_scenario::TimeStepping;
 
 use super::forces::SweepChange;
 
-/// What a step may leave, for a tolerance on the statistics of a run.
+/// Errors that a step may leave, for a tolerance on the statistics of a run.
 ///
 /// Between events steps leave errors that are small and alike, of period and damping of what vibrates, and a limit cycle adds them up for as long
 /// as it remembers: some ten seconds where its growth is 0.1 1/s. So a step may leave the part of the tolerance that the longest step of that
 /// tolerance is of the memory, in lateral displacements and, since friction feeds torsion, in the turning of the surface. Steps that are shorter than the longest
 /// are made for single events, impacts and captures, which are not repeated in every step: they may leave as much.
 ///
-/// A node that sticks and slips tells more of a step than any displacement: friction is as steep as 1 / v_ref at rest, so that the error
-/// of its coefficient, the error of the sliding speed times the slope of the curve, is looked at wherever nodes touch. What the last
-/// contact iteration changed says whether the contacts converged. The shares of the tolerance are from comparisons with converged runs
+/// A node that sticks and slips shows more of a step than any displacement: friction is as steep as 1 / v_ref at rest, so that the error
+/// of its coefficient, the error of the sliding speed times the slope of the curve, is checked wherever nodes touch. The changes of the
+/// last contact iteration show whether the contacts converged. The shares of the tolerance are from comparisons with converged runs
 /// over whole runs (`tests/whole_runs.rs`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Tolerances {
@@ -21,20 +21,20 @@ pub(super) struct Tolerances {
     displacement: f64,
     /// Local error of a friction coefficient.
     friction: f64,
-    /// Change in the last contact sweep: of a lateral displacement relative to the motion, and of a friction coefficient.
+    /// Change in the last contact iteration: of a lateral displacement relative to the motion, and of a friction coefficient.
     sweep: SweepChange,
     /// The smallest motion that errors are related to \[m\].
     smallest_motion: f64,
 }
 
-/// What a step leaves.
+/// Errors that a step leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StepError {
     /// Local error of the lateral displacements and of the surface's by the twist, root mean square over the nodes \[m\].
     pub(super) displacement: f64,
     /// Largest local error of a friction coefficient.
     pub(super) friction: f64,
-    /// What the last contact sweeps changed.
+    /// Changes by the last contact iterations.
     pub(super) sweep: SweepChange,
 }
 

@@ -59,7 +59,7 @@ impl Checkpoint {
         Ok(postcard::from_bytes(bytes)?)
     }
 
-    /// What it holds, if it is of this scenario and of a string of `nodes` nodes.
+    /// Progress that it holds, if it is of this scenario and of a string of `nodes` nodes.
     pub(super) fn progress_for<const D: usize>(
         &self,
         scenario: &Scenario,

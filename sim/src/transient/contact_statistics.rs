@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::NodeContact;
 
-/// What the wall did to one node over the whole run.
+/// Action of the wall on one node over the whole run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactStatistics {
     largest_radius_squared: f64,

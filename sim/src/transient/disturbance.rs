@@ -9,7 +9,7 @@ pub const DISTURBANCE: f64 = 1e-6;
 /// Half waves along the string that a disturbance is made of: smooth, so that it starts no vibration of its own.
 const HALF_WAVES: usize = 6;
 
-/// What is added to the displacements at the start of a member: nothing for member 0, and for each other one its own
+/// Displacements added at the start of a member: none for member 0, and for each other one its own
 /// sum of sines along the string with a largest value of [`DISTURBANCE`]. It vanishes at both ends.
 pub fn disturbance(model: &Model, member: u32) -> NodalVector {
     let nodes = &model.mesh.nodes;

@@ -54,7 +54,7 @@ pub struct EnergyRow {
     pub kinetic: f64,
     /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
     pub stored: f64,
-    /// What the accounts come to, in the order of [`ACCOUNTS`].
+    /// Values of the accounts, in the order of [`ACCOUNTS`].
     accounts: [f64; ACCOUNTS.len()],
     /// Change of energy less all work: the integration's own error.
     pub residual: f64,
@@ -83,7 +83,7 @@ impl EnergyRow {
         columns
     };
 
-    /// What an account comes to \[J\].
+    /// Value of an account \[J\].
     pub(crate) fn of(&self, account: &Account) -> f64 {
         self[account.name]
     }
@@ -285,14 +285,14 @@ impl<const D: usize> Ledger<D> {
         EnergyRow { time, kinetic, stored: structure + wall, accounts, residual: gained - balance }
     }
 
-    /// What a row may leave over \[J\]. Where the string `hardly_moves`, steps are not asked to resolve how: a method that damps what it does not
-    /// resolve may then take all that is turned over, and no balance leaves more.
+    /// Largest residual that a row may leave \[J\]. If the string `hardly_moves`, steps are not required to resolve how: a method that
+    /// damps what it does not resolve may then take all that is turned over, and no balance leaves more.
     pub(super) fn bound(&self, row: &EnergyRow, hardly_moves: bool) -> f64 {
         let share = if hardly_moves { 1.0 } else { LARGEST_RESIDUAL };
         share * row.turned_over() + self.rounding
     }
 
-    /// What rounding may leave of a balance \[J\].
+    /// Largest residual that rounding may leave of a balance \[J\].
     pub(super) fn rounding(&self) -> f64 {
         self.rounding
     }

@@ -32,7 +32,7 @@ pub(super) struct ErrorSum {
     rows: u64,
 }
 
-/// What the root of the summed squares of local errors is multiplied with.
+/// Factor on the root of the summed squares of local errors.
 ///
 /// Over the calibration scenes (`tests/error_estimate.rs`) the true error is 0.6 to 6 times that root for
 /// generalized-alpha, 15 to 150 times for ESDIRK4 (whose embedded method sees little of a contact's kink) and 4 to 60

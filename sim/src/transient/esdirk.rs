@@ -169,7 +169,7 @@ impl<const D: usize> Esdirk<D> {
         std::mem::swap(&mut state.acceleration, acceleration);
     }
 
-    /// What the attempted step of `level` from `state` leaves.
+    /// Errors that the attempted step of `level` from `state` leaves.
     pub(super) fn error(&self, level: u32, forces: &Forces<D>, state: &State<D>) -> StepError {
         let h = self.levels[level as usize].0;
         let end = &self.stages[STAGES - 2];

@@ -41,7 +41,7 @@ pub enum TransientError {
         node: usize,
         /// Its measured depth \[m\].
         measured_depth: f64,
-        /// What was seen.
+        /// Observed reason.
         reason: DivergenceReason,
     },
 }
@@ -65,7 +65,7 @@ pub enum DivergenceReason {
         "the energy ledger leaves {residual:.3e} J, more than its bound of {bound:.3e} J: the steps are too long for this contact"
     )]
     EnergyNotConserved {
-        /// What is left over \[J\].
+        /// Energy left over \[J\].
         residual: f64,
         /// Its bound \[J\].
         bound: f64,

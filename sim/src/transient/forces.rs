@@ -33,7 +33,7 @@ struct NodeSurfaces {
     normal_force: Four,
 }
 
-/// What the wall does to four nodes; zero where one does not touch.
+/// Action of the wall on four nodes; zero for one that does not touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroupContact {
     /// Penetrations \[m\] if any node touches.
@@ -52,7 +52,7 @@ pub(super) struct GroupContact {
     pub(super) radius: Four,
 }
 
-/// What the wall does to one node.
+/// Action of the wall on one node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct NodeContact {
     /// Signed size of the normal force \[N\]; positive pushes inwards.
@@ -79,7 +79,7 @@ struct GroupCompliance {
     surface: Four,
 }
 
-/// What the last sweep of a solve still changed at nodes that touch.
+/// Changes that the last sweep of a solve still made at nodes that touch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct SweepChange {
     /// Largest change of a lateral displacement \[m\].
@@ -277,7 +277,7 @@ impl<const D: usize> Forces<D> {
         self.contact_by(self.law(), self.law_along(), x, rates, out, others, all);
     }
 
-    /// What the wall does to the nodes of a motion, by the law alone.
+    /// Computes the action of the wall on the nodes of a motion, by the law alone.
     pub(super) fn contact_at(&self, x: &NodalField<D>, v: &NodalField<D>, out: &mut ContactForces) {
         let (law, law_along) = (self.law(), self.law_along());
         let rates = |group: usize, dof: usize| v.groups()[group][dof];
@@ -388,7 +388,7 @@ impl<const D: usize> Forces<D> {
         }
     }
 
-    /// What changes of the motion between two sweeps of a solve come to where nodes touch: `x` less `before` in displacements, times
+    /// Effect at touching nodes of the changes of the motion between two sweeps of a solve: `x` less `before` in displacements, times
     /// `speed` \[1/s\] in velocities.
     pub(super) fn sweep_change(
         &self,
@@ -452,7 +452,7 @@ impl<const D: usize> Forces<D> {
         Four::select(touches, (slope * surface_speed(change, zero)).abs(), zero)
     }
 
-    /// What the wall does to four nodes by a law, and in `forces` what that adds to the others.
+    /// Computes the action of the wall on four nodes by a law, and in `forces` what it adds to the others.
     #[inline(always)]
     fn push(
         &self,

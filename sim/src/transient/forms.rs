@@ -47,7 +47,7 @@ pub(super) struct Integrals<const N: usize> {
     pub(super) skew: f64,
 }
 
-/// What is left of a matrix' symmetric part, with the nodes where it is: blocks on the diagonal and blocks above it. Between
+/// Remainder of a matrix' symmetric part, with the nodes where it is: blocks on the diagonal and blocks above it. Between
 /// equal neighbours the Coriolis matrices' boundary terms cancel: theirs lives where the section changes.
 #[derive(Debug, Clone)]
 struct SymmetricPart<const D: usize> {

@@ -7,7 +7,7 @@ use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
 /// Spectral radius at infinite frequency where none is asked for. One (the trapezium rule) must not be used with a fixed number of
-/// contact sweeps: it damps nothing of what they leave over, and the contacts' work becomes wrong by orders of magnitude while every
+/// contact iterations: it damps nothing of what they leave over, and the contacts' work becomes wrong by orders of magnitude while every
 /// value stays finite (docs/model/motion.md, Generalized-alpha).
 pub(super) const SPECTRAL_RADIUS: f64 = 0.8;
 
@@ -137,7 +137,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
     }
 }
 
-/// What the offsets and the predictor of a step's level take from the state at its start.
+/// Coefficients of the state at a step's start in the offsets and the predictor of the step's level.
 struct LevelCoefficients {
     step_to_level: Four,
     half_step: Four,
@@ -170,7 +170,7 @@ impl LevelCoefficients {
     }
 }
 
-/// What the step's end takes from its level and its start.
+/// Coefficients of a step's level and start in its end.
 struct EndCoefficients {
     /// 1 / (1 - alpha_f): draws the change up to the level out to the whole step.
     drawn_out: Four,

@@ -1,10 +1,10 @@
-//! What both implicit integrators share: a stage solve on one stored factor with contact sweeps.
+//! Common part of both implicit integrators: a stage solve on one stored factor with contact iterations.
 //!
 //! At a stage the velocities and accelerations are linear in the unknown displacements,
 //! `v = v^ + c_v x` and `a = a^ + c_a x`, so that the equations of motion become
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix A0 is factored once for each step length.
 //! Contact stays on the right-hand side and is re-evaluated in each sweep, implicitly at each node: the blocks on the diagonal
-//! of A0^-1 tell how a node gives way to its own contact force, and the force is the one that agrees with that. So a node that sticks,
+//! of A0^-1 show how a node gives way to its own contact force, and the force is the one that agrees with that. So a node that sticks,
 //! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is held in the first sweep; what sweeps still
 //! have to converge to is what nodes do to each other.
 
@@ -27,7 +27,7 @@ const LOOSE: SweepChange = SweepChange { lateral: 1e-5, friction: 0.05 };
 pub(super) struct StageMatrix<const D: usize> {
     factor: Factor<D>,
     coefficients: StageCoefficients,
-    /// What the right-hand side has at the held degrees of freedom.
+    /// Entries of the right-hand side at the held degrees of freedom.
     held_values: Vec<f64>,
     /// How nodes give way to their own contact forces.
     compliance: Compliance,
@@ -41,7 +41,7 @@ pub(super) struct StageSolver<const D: usize> {
     sweeps: u32,
     external: NodalField<D>,
     right: NodalField<D>,
-    /// What the way inwards leaves for the way outwards.
+    /// Intermediate values of a solve: left by the way inwards for the way outwards.
     between: NodalVector<D>,
     /// Displacements of the stage: the predictor before a solve, the solution after it.
     pub(super) displacement: NodalField<D>,
@@ -52,7 +52,7 @@ pub(super) struct StageSolver<const D: usize> {
     /// Contact forces that went into the last sweep.
     pub(super) contact: ContactForces,
     pub(super) monitor: SweepMonitor,
-    /// What the last sweeps of the solves of a step changed.
+    /// Changes by the last sweeps of the solves of a step.
     change: SweepChange,
     /// Largest normal forces in the solves of a step.
     peaks: Vec<Four>,
@@ -60,7 +60,7 @@ pub(super) struct StageSolver<const D: usize> {
     normal_forces: Vec<Four>,
 }
 
-/// How far the contact sweeps of a run were from convergence.
+/// How far the contact iterations of a run were from convergence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SweepMonitor {
     /// Largest change of a touching node's lateral displacement in the last sweep of any solve \[m\].
@@ -82,7 +82,7 @@ impl SweepMonitor {
     }
 }
 
-/// What velocities and accelerations of a stage are per displacement.
+/// Velocities and accelerations of a stage per displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StageCoefficients {
     /// c_a \[1/s2\].
@@ -165,7 +165,7 @@ impl<const D: usize> StageSolver<D> {
         self.peaks.fill(Four::ZERO);
     }
 
-    /// What the last sweeps of the solves of this step changed.
+    /// Changes by the last sweeps of the solves of this step.
     pub(super) fn change(&self) -> SweepChange {
         self.change
     }

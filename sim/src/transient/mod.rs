@@ -67,7 +67,7 @@ enum Solved<'m> {
     Four(Box<Run<'m, 4>>),
 }
 
-/// What a finished run leaves, with its [`Histories`].
+/// Results of a finished run, with its [`Histories`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Records<H = Vec<NodeHistory>> {
     /// Recording rate \[Hz\].
@@ -87,22 +87,22 @@ pub struct Records<H = Vec<NodeHistory>> {
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
     pub energy: Vec<EnergyRow>,
-    /// What the last row's residual may be at most \[J\]; a run that exceeds it ends as diverged.
+    /// Bound of the last row's residual \[J\]; a run that exceeds it ends as diverged.
     pub energy_bound: f64,
-    /// What rounding alone may leave of that \[J\]: works below it say nothing.
+    /// Residual that rounding alone may leave \[J\]: works below it show nothing.
     pub energy_rounding: f64,
     /// Estimated error of the lateral displacements.
     pub error: ErrorEstimate,
-    /// What the run took.
+    /// Effort of the run.
     pub effort: TransientEffort,
 }
 
-/// What a run took.
+/// Effort of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TransientEffort {
     /// Integrator and step as used.
     pub stepping: TimeStepping,
-    /// Parts into which each step was cut so that the contact sweeps are stable.
+    /// Parts into which each step was cut so that the contact iterations are stable.
     pub subdivisions: u32,
     /// Steps made.
     pub steps: u64,
@@ -370,7 +370,7 @@ pub fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     angle / (std::f64::consts::TAU * step)
 }
 
-/// The longest step \[s\] of a run that is to resolve the torsion that falling friction feeds.
+/// The longest step \[s\] of a run that is to resolve the torsion that velocity-weakening friction feeds.
 fn resolving_step(model: &Model, equilibrium: &Equilibrium) -> f64 {
     let stepping = model.scenario.accuracy.time_stepping();
     let torsion = if resolves_torsion(&stepping) { UndampedTorsion::about(model, equilibrium) } else { None };
@@ -425,8 +425,8 @@ pub fn rk4_stability_limit(model: &Model, equilibrium: &Equilibrium) -> Result<f
     Ok(stability::rk4_limit(model, &model.dynamic_system(equilibrium))?)
 }
 
-/// What is wrong with the step of a valid scenario: a fixed step of the explicit method beyond its stability limit. Looked
-/// for before a run is queued; it takes an equilibrium and some hundred products, and nothing for the other methods.
+/// Problem with the step of a valid scenario: a fixed step of the explicit method beyond its stability limit. Checked
+/// before a run is queued; it takes an equilibrium and some hundred products, and nothing for the other methods.
 pub fn step_problem(scenario: &Scenario) -> Option<Problem> {
     let stepping = scenario.accuracy.time_stepping();
     if stepping.integrator != Integrator::Rk4

@@ -20,7 +20,7 @@ pub(super) const RESOLVED_ANGLE: f64 = 0.45;
 /// 400,000 a radian of the fastest oscillation.
 const SMALLEST_STEP_RATIO: f64 = 1e-6;
 
-/// What the distance of two steps of h from one step of 2 h is divided by for the error of the two: 2^p - 1 for order p = 4 (Hairer,
+/// Divisor of the distance of two steps of h from one step of 2 h that gives the error of the two: 2^p - 1 for order p = 4 (Hairer,
 /// Norsett and Wanner 1993, section II.4).
 const DISTANCE_OVER_ERROR: f64 = 15.0;
 
@@ -48,7 +48,7 @@ pub(super) struct Rk4<const D: usize> {
     adaptive: Option<Adaptive<D>>,
     rates: [(NodalField<D>, NodalField<D>); 4],
     stage: (NodalField<D>, NodalField<D>),
-    /// What moves the string but the contacts.
+    /// Forces that move the string, without those of the contacts.
     external: NodalField<D>,
     right: NodalField<D>,
     between: NodalVector<D>,

@@ -68,7 +68,7 @@ pub(super) struct Run<'m, const D: usize> {
     initial: NodalField<D>,
     stepper: Stepper<D>,
     ledger: Ledger<D>,
-    /// What the wall does at the present state.
+    /// Action of the wall at the present state.
     contact: ContactForces,
     /// Samples of a whole run.
     samples: u64,
@@ -87,14 +87,14 @@ pub(super) struct Run<'m, const D: usize> {
     fastest: usize,
     /// Samples of the recorded nodes that were not handed over yet.
     block: Vec<NodeHistory>,
-    /// Those of the bit, where it is recorded beside them.
+    /// Samples of the bit that were not handed over yet, if it is recorded with the nodes.
     bit: Option<NodeHistory>,
     /// Present where snapshots are asked for.
     snapshots: Option<Recorder<D>>,
     progress: Progress<D>,
 }
 
-/// What a run has recorded since it last handed something over.
+/// Data that a run has recorded since it last handed something over.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     /// Samples of the recorded nodes.
@@ -108,7 +108,7 @@ pub struct Block<'a> {
 /// Takes a block of what is recorded, which follows the block before; says why it cannot be kept.
 pub type Keep<'a> = dyn FnMut(Block<'_>) -> Result<(), String> + 'a;
 
-/// What a run starts from.
+/// Start of a run.
 pub(super) struct Start<'a> {
     /// Displacements at the start, of all degrees of freedom.
     pub(super) rest: NodalVector,

@@ -24,7 +24,7 @@ pub struct SnapshotTimes {
 }
 
 impl SnapshotTimes {
-    /// Those of a scenario; none where it asks for no snapshots.
+    /// Snapshot times of a scenario; none if it requests no snapshots.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let snapshots = scenario.recording.snapshots?;
         let window = scenario.snapshot_window()?;
@@ -56,7 +56,7 @@ impl SnapshotTimes {
     }
 }
 
-/// What a snapshot tells of every node.
+/// Quantity that a snapshot holds for every node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SnapshotSeries {
     /// Lateral displacement along e1 \[m\].
@@ -95,7 +95,7 @@ impl SnapshotSeries {
 /// Some snapshots, one after the other, in single precision.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SnapshotBlock {
-    /// What they tell of every node.
+    /// Quantities that they hold for every node.
     pub series: Vec<SnapshotSeries>,
     /// The number of snapshots.
     pub count: usize,

@@ -1,4 +1,4 @@
-//! What limits a step before accuracy does.
+//! Limits of a step that come before accuracy.
 
 use drillsweep_scenario::{Integrator, TimeStepping};
 use nalgebra::Complex;
@@ -41,7 +41,7 @@ const LARGEST_SWEEP_FACTOR: f64 = 0.5;
 /// more are within a thousandth of their limits after these, and one of 0.04, far below the bound, within a tenth.
 const SWEEP_ITERATIONS: usize = 40;
 
-/// The smallest power of two of equal parts into which `step` must be cut for the contact sweeps to be stable.
+/// The smallest power of two of equal parts into which `step` must be cut for the contact iterations to be stable.
 ///
 /// # Errors
 /// When it takes too many, or the matrix of a step is singular.
@@ -82,8 +82,8 @@ pub(super) fn subdivisions(
     }
 }
 
-/// What is expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction, which hardly
-/// matter to how contact pushes single nodes unless the string hardly rotates.
+/// Subdivisions expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction,
+/// which hardly matter to how contact pushes single nodes unless the string hardly rotates.
 pub(super) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u32 {
     let unloaded = Equilibrium::unloaded(model);
     let system = model.dynamic_system(&unloaded);
@@ -321,7 +321,7 @@ impl ClosedSegment {
     }
 }
 
-/// What contact concerns of a node; zero where it does not.
+/// Values of a node at the degrees of freedom that contact concerns; zero at the others.
 fn lateral_and_twist([u, v]: [f64; LATERAL], twist: f64) -> [f64; DOFS] {
     let mut values = [0.0; DOFS];
     (values[U], values[V], values[THETA_Z]) = (u, v, twist);

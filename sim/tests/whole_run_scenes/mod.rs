@@ -20,7 +20,7 @@ use drillsweep_sim::study::mesh_estimate::MeshEstimate;
 use drillsweep_sim::study::summary::TransientSummary;
 use drillsweep_sim::transient::{Outcome, Records, Transient};
 
-/// What is read is the last third of a run \[s\].
+/// Window that is read: the last third of a run \[s\].
 const WINDOW: TimeWindow = TimeWindow { from: 20.0, to: 30.0 };
 
 /// The paper's string without its tool joints, on a coarse mesh, with damping that closes the model. It begins to stick and slip after some
@@ -119,7 +119,7 @@ pub fn scenes() -> Vec<(&'static str, Scenario)> {
     ]
 }
 
-/// What is read of a recorded node.
+/// Values read of a recorded node.
 #[derive(Debug, Clone, Copy)]
 pub struct Read {
     /// Orbit size, standard deviation of the radius and mean radius \[m\].
@@ -176,7 +176,7 @@ impl WholeRun {
         Self::of(scenario, Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, step)), 0)
     }
 
-    /// By ESDIRK4 with fixed steps \[s\] and converged contact sweeps.
+    /// By ESDIRK4 with fixed steps \[s\] and converged contact iterations.
     pub fn by_esdirk4(scenario: &Scenario, step: f64) -> Self {
         let fixed = TimeStepping::fixed(Integrator::Esdirk4, step);
         Self::of(scenario, Accuracy::Explicit(TimeStepping { contact_sweeps: 20, ..fixed }), 0)

@@ -1,4 +1,4 @@
-//! What the objects lie on.
+//! Backends of the blob store.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -51,7 +51,7 @@ const LONG: Patience =
 /// Of those who only want to know who answers.
 const ONCE: Patience = Patience { retry: Duration::ZERO, pause: Duration::ZERO, silence: "5s" };
 
-/// What the objects lie on, with as much of it as differs. The stores are the same one but for their patience.
+/// Directory or bucket of the objects, with all that differs between them. The stores are the same one but for their patience.
 #[derive(Debug, Clone)]
 pub(super) struct Backend {
     /// For what somebody waits for.

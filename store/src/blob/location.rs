@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use object_store::path::Path as ObjectPath;
 
-/// What a location of S3 begins with.
+/// Scheme of a location in S3.
 const S3: &str = "s3://";
 
 /// Where the object store is: `DIRECTORY` or `s3://BUCKET[/PREFIX]`. It is shown as it is written, and never with a secret.
@@ -20,7 +20,7 @@ pub enum ObjectsLocation {
     S3 {
         /// The bucket, which must exist.
         bucket: String,
-        /// What the names of all objects begin with, without slashes at its ends; empty for the whole bucket.
+        /// Prefix of the names of all objects, without slashes at its ends; empty for the whole bucket.
         prefix: String,
         /// Settings in the place of the environment's, by the names of `object_store` (`endpoint`, `access_key_id`). No text of a
         /// location has any: they are for programs that cannot change their environment.
@@ -48,7 +48,7 @@ pub enum LocationError {
     Prefix {
         /// The prefix.
         prefix: String,
-        /// What is wrong with it.
+        /// Reason why it is invalid.
         reason: String,
     },
 }

@@ -17,7 +17,7 @@ use crate::database::{Database, Transaction};
 use crate::error::{Result, StoreError};
 use crate::migration;
 
-/// Whose turn it is to write within this process.
+/// Lock that only one writer of this process holds at a time.
 pub(crate) type Writers = Arc<Mutex<()>>;
 
 /// How long a writer waits for another one.

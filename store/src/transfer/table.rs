@@ -40,7 +40,7 @@ enum Kind {
     Bytes,
 }
 
-/// What tells two tables of different content apart.
+/// Checksum that distinguishes tables of different content.
 #[derive(PartialEq, Eq)]
 pub(super) struct Sum {
     pub(super) rows: u64,
@@ -113,7 +113,7 @@ impl Table {
         Ok(summing.end())
     }
 
-    /// What the table holds.
+    /// Checksum of the table's content.
     pub(super) async fn sum(&self, tx: &mut Transaction) -> Result<Sum> {
         let mut summing = Summing::new();
         let mut rows = self.rows(tx);
@@ -199,7 +199,7 @@ impl Table {
     }
 }
 
-/// What a column can be read as, by one engine.
+/// Type that a column can be read as, by one engine.
 trait Readable<'r, D: Database>: Decode<'r, D> + Type<D> {}
 
 impl<'r, D: Database, T: Decode<'r, D> + Type<D>> Readable<'r, D> for T {}
@@ -252,7 +252,7 @@ impl Summing {
         }
     }
 
-    /// What is absent is not what is empty.
+    /// Adds a value; an absent one differs from an empty one.
     fn add_value(&mut self, kind: u8, value: Option<impl AsRef<[u8]>>) {
         let length = value.as_ref().map_or(u64::MAX, |value| value.as_ref().len() as u64);
         self.hasher.update(&[kind]).update(&length.to_le_bytes());

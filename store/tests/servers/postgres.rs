@@ -118,7 +118,7 @@ impl Server {
         self.data.clone()
     }
 
-    /// What it has written into its own log.
+    /// Content of its own log.
     #[allow(dead_code, reason = "not all that use this module read it")]
     pub(crate) fn log(&self) -> String {
         std::fs::read_to_string(self.directory.path().join("log")).unwrap_or_default()
@@ -170,7 +170,7 @@ impl Server {
         self.resume();
     }
 
-    /// What a statement gives, as `psql` prints it without its frame.
+    /// Output of a statement, as `psql` prints it without its frame.
     #[allow(dead_code, reason = "not all that use this module ask it something")]
     pub(crate) fn query(&self, statement: &str) -> String {
         self.try_query(statement).unwrap_or_else(|error| panic!("{error}"))

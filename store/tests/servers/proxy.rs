@@ -1,4 +1,4 @@
-//! What stands between a client and a server and does what networks and overloaded servers do.
+//! Proxy between a client and a server that does what networks and overloaded servers do.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
 use std::time::Duration;
 
-/// What becomes of a request.
+/// Treatment of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Behaviour {
     /// It is passed on, and so is its answer.
@@ -64,7 +64,7 @@ impl Proxy {
         &self.address
     }
 
-    /// What is done from now on.
+    /// Sets the behaviour from now on.
     pub(crate) fn set(&self, behaviour: Behaviour) {
         self.shared.state.lock().expect("no thread panics").behaviour = behaviour;
         self.shared.changed.notify_all();

@@ -1,4 +1,4 @@
-//! What an engine must give the tests, and what they have in common.
+//! Trait of an engine in the tests, and functions that they share.
 
 use drillsweep_store::{
     Addition, CachePolicy, Claim, Finished, NewArtifact, NewPoint, NewResult, NewSweep, NewVerification,
@@ -16,7 +16,7 @@ pub(crate) trait Engine {
     /// A place with nothing in it.
     fn new() -> Self;
 
-    /// What opens the store in this place.
+    /// Configuration that opens the store in this place.
     fn config(&self, role: Role, clock_offset_ms: i64) -> StoreConfig;
 
     /// Everything in the object store, by name.
@@ -59,7 +59,7 @@ pub(crate) trait Engine {
     }
 }
 
-/// What a JSON text says: engines write it with and without spaces.
+/// Value of a JSON text: engines write it with and without spaces.
 pub(crate) fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).unwrap()
 }

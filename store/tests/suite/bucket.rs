@@ -1,4 +1,4 @@
-//! What becomes of objects that lie in a bucket, seen through the store on either engine.
+//! Objects in a bucket and their fate, seen through the store on either engine.
 
 /// With a SQLite file.
 mod sqlite {

@@ -1,4 +1,4 @@
-//! What networks and object stores do to blobs: servers that are gone, killed, restarted or overloaded, and answers that are lost.
+//! Blobs under faults of networks and object stores: servers that are gone, killed, restarted or overloaded, and answers that are lost.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -12,10 +12,10 @@ use crate::servers::seaweed::Seaweed;
 
 const PREFIX: &str = "faults";
 
-/// What a server says that has too much to do.
+/// Answer of an overloaded server.
 const OVERLOADED: Behaviour = Behaviour::Refuse("503 Slow Down", "<Error><Code>SlowDown</Code></Error>");
 
-/// What a server says that has no room for its user.
+/// Answer of a server that has no room for its user.
 const FULL: Behaviour = Behaviour::Refuse("403 Forbidden", "<Error><Code>QuotaExceeded</Code></Error>");
 
 /// A file of 24 MB and its name. Its upload has three parts.

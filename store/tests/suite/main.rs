@@ -1,9 +1,9 @@
-//! What the store promises: who gets what to do, what is kept, what a late writer cannot do. Time passes by opening the same
+//! Guarantees of the store: who gets what to do, what is kept, what a late writer cannot do. Time passes by opening the same
 //! store with a later clock.
 //!
 //! The tests know an engine by the trait [`bench::Engine`] alone. `conformance!` runs all of them for one engine, in that
-//! engine's module; a test that it does not list is a function that nobody calls, which the lints refuse. What concerns blobs alone
-//! knows a place for objects by the trait [`place::Place`].
+//! engine's module; a test that it does not list is a function that nobody calls, which the lints refuse. Tests of blobs alone
+//! know a place for objects by the trait [`place::Place`].
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -159,7 +159,7 @@ macro_rules! conformance {
     };
 }
 
-/// Those of them that write, read or delete objects, in one test: each process that has a bucket starts a server for it. A bucket has no
+/// Runs those that write, read or delete objects, in one test: each process that has a bucket starts a server for it. A bucket has no
 /// unfinished uploads to be found, and nothing stops its users from writing.
 macro_rules! with_objects {
     ($engine:ident) => {

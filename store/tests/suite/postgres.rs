@@ -318,7 +318,7 @@ async fn a_worker_has_one_connection_for_statements_that_follow_each_other() {
     assert_eq!(sweep_record(&server, "s").await.counts.done, 10);
 }
 
-/// What a call gives; nothing where it has waited so often before, and is dropped at its next wait.
+/// Result of a call; none if it has waited so often before, and is dropped at its next wait.
 async fn dropped_at<T>(wait: u32, call: impl Future<Output = T>) -> Option<T> {
     let mut call = std::pin::pin!(call);
     let mut waits = 0;
@@ -631,7 +631,7 @@ conformance!(Postgres);
 
 #[tokio::test]
 async fn a_server_that_can_make_no_process_for_a_connection_is_asked_again() {
-    /// What such a server writes without having read anything (`report_fork_failure_to_client` in its source).
+    /// Message that such a server writes without having read anything (`report_fork_failure_to_client` in its source).
     const NO_PROCESS: &[u8] =
         b"Ecould not fork new process for connection: Resource temporarily unavailable\n\0";
     let engine = <Postgres>::new();

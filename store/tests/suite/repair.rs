@@ -1,4 +1,4 @@
-//! What storage has lost is computed again, and is whole after that.
+//! Results that storage has lost are computed again, and are whole after that.
 
 use drillsweep_store::{BlobId, Claim, Repair, RepairReport, Store, WorkState};
 

@@ -346,7 +346,7 @@ impl<R: ReadAt> Blocks<R> {
         Self(Arc::new(Inner { file, last: Mutex::default() }))
     }
 
-    /// What follows on a place, to the end of its block; nothing at the end of the file.
+    /// Bytes from a place to the end of its block; none at the end of the file.
     fn from(&self, start: u64) -> io::Result<Bytes> {
         let length = self.0.file.length();
         if start >= length {

@@ -198,9 +198,9 @@ quantities! {
     DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated contact";
     /// Net work of contact and friction forces on the motion up to this time.
     CONTACT_WORK: "contact_work", "", ENERGY, "contact work";
-    /// What does not balance: the error of the time integration.
+    /// Imbalance of energy: the error of the time integration.
     RESIDUAL: "residual", "", ENERGY, "residual";
-    /// What does not balance in the energy ledger at the end of the run.
+    /// Imbalance of the energy ledger at the end of the run.
     ENERGY_RESIDUAL: "energy_residual", "", ENERGY, "energy residual";
     /// The residual over the net work of the contacts; absent where that is no more than rounding.
     ENERGY_RESIDUAL_RATIO: "energy_residual_ratio", "", RATIO, "energy residual ratio";
@@ -319,14 +319,14 @@ quantities! {
     /// Node at which the point failed.
     ERROR_NODE: "error_node", "", -, "error node";
 
-    // What it cost.
+    // Cost.
     /// Time by the clock.
     WALL_TIME: "wall_time", "", TIME, "wall time";
     /// Processor time.
     CPU_TIME: "cpu_time", "", TIME, "cpu time";
     /// Processor time that an accuracy takes.
     COST_CPU_TIME: "cost_cpu_time", "", TIME, "cost cpu time";
-    /// What the line of the study is: reference, method, mesh, effect or total.
+    /// Role of the line in the study: reference, method, mesh, effect or total.
     ROLE: "role", "", -, "role";
     /// Name of the accuracy or method.
     NAME: "name", "", -, "name";

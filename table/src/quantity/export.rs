@@ -6,19 +6,19 @@ use serde_json::{Value, json};
 
 use super::{Quantity, Unit, all, units};
 
-/// What a name stands for: a column without its node and spectrum window, or a field of a scenario by its path without indices.
+/// Meaning of a name: a column without its node and spectrum window, or a field of a scenario by its path without indices.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct QuantityEntry {
-    /// What pictures call it.
+    /// Its name in pictures.
     pub label: &'static str,
     /// Its symbol in the equations of the model, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symbol: Option<&'static str>,
-    /// What it is, in a sentence; absent of fields of a scenario, whose schema says it.
+    /// Its meaning, in a sentence; absent of fields of a scenario, whose schema gives it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub meaning: Option<&'static str>,
-    /// What kind of quantity it is, such as `length`; absent, like all units, of names and numbers of things.
+    /// Kind of quantity, such as `length`; absent, like all units, of names and numbers of things.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dimension: Option<&'static str>,
     /// The unit in which it is served and requests give it; `1` of ratios.

@@ -24,9 +24,9 @@ pub struct Quantity {
     pub symbol: &'static str,
     /// Its units; none of names, and of numbers of things.
     pub units: Option<&'static Units>,
-    /// What pictures call it.
+    /// Its name in pictures.
     pub label: &'static str,
-    /// What it is, in a sentence; empty of fields of a scenario, whose own documentation says it.
+    /// Its meaning, in a sentence; empty of fields of a scenario, whose own documentation gives it.
     pub meaning: &'static str,
 }
 

@@ -9,11 +9,11 @@ use super::{Quantity, Units, all, columns, units};
 /// A column's name, or a scenario's path, taken apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Name<'n> {
-    /// What it is of.
+    /// Its quantity.
     pub quantity: &'static Quantity,
     /// Which of the columns of this quantity, where it has several: `orbit_size_2_percent` of `cost_cpu_time`.
     pub detail: Option<&'n str>,
-    /// What became of the quantity.
+    /// Derivation of the quantity.
     pub variant: Variant,
     /// The node that it belongs to.
     pub place: Option<Place<'n>>,
@@ -82,7 +82,7 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-/// What became of a quantity.
+/// Derivation of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variant {
     /// Nothing: the value itself.
@@ -110,7 +110,7 @@ impl Variant {
         Variant::Bias,
     ];
 
-    /// What stands before the quantity's name.
+    /// Prefix of the quantity's name.
     pub fn prefix(self) -> &'static str {
         match self {
             Variant::Value => "",
@@ -171,7 +171,7 @@ impl<'n> Name<'n> {
     }
 }
 
-/// What pictures call the column.
+/// Name of the column in pictures.
 impl fmt::Display for Name<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.variant != Variant::Value {

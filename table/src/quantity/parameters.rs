@@ -107,7 +107,7 @@ pub(super) static ALL: &[Quantity] = &[
     field("mesh.stabilizer", "", Some(&units::DEPTH), "element length in stabilizers"),
     field("mesh.bit", "", Some(&units::DEPTH), "element length in the bit"),
     field("mesh.auto", "", Some(&units::RATIO), "factor on automatic element lengths"),
-    // What is recorded.
+    // Recording.
     field("recording.rate_hz", "", Some(&units::FREQUENCY), "recording rate"),
     field("recording.nodes.node", "", None, "recorded node"),
     field("recording.nodes.depth", "", Some(&units::DEPTH), "recorded depth"),

@@ -108,15 +108,15 @@ class Client:
             skip: Points at the start of the Sobol sequence to skip, to continue another sweep of the same seed.
             points: The points of the design `list`, each with a value for every parameter; rows of a data frame do
                 (`frame.to_dict("records")`).
-            outputs: What is kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
+            outputs: Outputs that are kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
                 `{"orbits": {"nodes": [{"node": 49}], "window": {"from": 40, "to": 60}, "decimation": 4}}` or `"full"`.
             verify: How many of the points are run again by the reference, to see how far the accuracy can be trusted: a
                 part of them below 1, such as 0.05, or a number; `Sweep.verification` has what is found.
             name: A name for people.
-            owner: Whose share of the workers it counts against.
+            owner: Owner, whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
             tags: Words to find it by.
-            cache: What becomes of points that were computed before: `reuse` takes their results (the default),
+            cache: Policy for points that were computed before: `reuse` takes their results (the default),
                 `refresh` computes them anew, `only` takes them and computes nothing.
             idempotency_key: The same request under the same key is one sweep, however often and from wherever it is
                 sent; absent means a new sweep each call.
@@ -195,7 +195,7 @@ class Client:
             yield Point(self, data)
 
     def watch(self, *, owner: str | None = None, tag: str | None = None) -> Iterator[tuple[str, dict[str, Any]]]:
-        """What happens to all sweeps from now on, as it happens; to those of one owner, or with a tag. It does not end.
+        """Events of all sweeps from now on, as they happen; of those of one owner, or with a tag. They do not end.
 
         Pairs of a name and data: `sweep` with a sweep in its present state, which begins with those that are not final
         and comes at most once a second of each, and `deleted` with the `id` of one that is gone.

@@ -186,7 +186,7 @@ def _shown(column: str) -> Unit:
 
 
 def _name(column: str) -> str:
-    """What the page calls a column, such as `u, node 49`."""
+    """Name of a column on the page, such as `u, node 49`."""
     known = quantity(column)
     if known is None:
         return column.replace("_", " ")

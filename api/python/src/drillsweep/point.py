@@ -35,7 +35,7 @@ class PointError:
     kind: str
     """The class of failure: physical, infrastructure, crash, timeout, cancelled or outdated."""
     reason: str
-    """What happened, in words."""
+    """Explanation in words."""
     time: float | None = None
     """Simulated time at which it happened [s]."""
     node: int | None = None
@@ -286,11 +286,11 @@ class Point:
         return self.view("course")
 
     def cost(self) -> dict[str, Any]:
-        """What accuracy costs, where the scenario has a `cost_study`."""
+        """Cost of accuracy, if the scenario has a `cost_study`."""
         return self._client.get_json(f"{self.path}/cost")
 
     def plan(self) -> dict[str, Any]:
-        """What its scenario calls for and takes: every effect with why, mesh, steps and processor times."""
+        """Plan of its scenario: every effect with why, mesh, steps and processor times."""
         return self._client.get_json(f"{self.path}/plan")
 
     def modes(self, *, to_hz: float | None = None) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions; what the service says about it is RFC 9457 problem details."""
+"""Errors as exceptions; the service describes them by RFC 9457 problem details."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class FieldProblem:
     """One thing that is wrong with a request."""
 
     detail: str
-    """What is wrong and what would be valid."""
+    """Explanation of the problem, and what would be valid."""
     pointer: str | None = None
     """JSON Pointer into the request, such as `/axes/flow_rate/values/2`."""
     parameter: str | None = None
     """Name of the query, path or header parameter."""
     got: Any = None
-    """What was given; None when nothing was."""
+    """Value that was given; None if none was."""
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> FieldProblem:
@@ -76,7 +76,7 @@ class Problem(DrillsweepError):
         self.title = str(data.get("title", f"the server answered {status}"))
         """The kind in words."""
         self.detail = str(data.get("detail", ""))
-        """What is wrong this time."""
+        """Explanation of this occurrence."""
         self.errors = tuple(FieldProblem.from_json(error) for error in data.get("errors", ()))
         """Every single problem with the request, all at once."""
         self.instance: str | None = data.get("instance")

@@ -1,4 +1,4 @@
-"""What the names of columns and of a scenario's fields stand for: symbols, units, labels."""
+"""Meaning of the names of columns and of a scenario's fields: symbols, units, labels."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class Unit:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a name stands for."""
+    """Meaning of a name."""
 
     name: str
     """The name of the column without node and spectrum window, or the path of the scenario's field without indices."""
     label: str
-    """What pictures call it."""
+    """Its name in pictures."""
     unit: str | None
     """The unit in which it is served (`1` for ratios); None for names and numbers of things."""
     shown: Unit
@@ -46,11 +46,11 @@ class Quantity:
     symbol: str = ""
     """Its symbol in the model's equations, if it has one."""
     meaning: str = ""
-    """What it is, in a sentence."""
+    """Its meaning, in a sentence."""
 
 
 def quantity(name: str) -> Quantity | None:
-    """What a column of a table, or a path of a scenario, stands for; None if it is of no known quantity.
+    """Quantity of a column of a table, or of a path of a scenario; None if it is of no known quantity.
 
     >>> quantity("orbit_radius_rms_49").shown.symbol
     'mm'

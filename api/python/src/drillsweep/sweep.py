@@ -38,7 +38,7 @@ class Unchanged(Enum):
 
 
 UNCHANGED = Unchanged.UNCHANGED
-"""What a change leaves as it is, where None means something else."""
+"""Value of fields that a change leaves as they are, where None means something else."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class PlannedPoint:
 
 @dataclass(frozen=True)
 class Plan:
-    """What a request would become, without storing anything."""
+    """Preview of a request, without storing anything."""
 
     total: int
     """Number of points."""
@@ -73,7 +73,7 @@ class Plan:
     points: tuple[PlannedPoint, ...]
     """The points, in order."""
     warnings: tuple[FieldProblem, ...]
-    """What can be simulated but is probably not meant."""
+    """Warnings about what can be simulated but is probably not meant."""
     data: dict[str, Any]
     """The service's whole answer."""
 
@@ -105,7 +105,7 @@ class Sweep:
 
     @property
     def owner(self) -> str:
-        """Whose share of the workers it counts against."""
+        """Owner, whose share of the workers it counts against."""
         return str(self._data["owner"])
 
     @property
@@ -174,12 +174,12 @@ class Sweep:
 
     @property
     def warnings(self) -> tuple[FieldProblem, ...]:
-        """What can be simulated but is probably not meant; in the answer to a submission only."""
+        """Warnings about what can be simulated but is probably not meant; in the answer to a submission only."""
         return tuple(FieldProblem.from_json(warning) for warning in self._data.get("warnings", ()))
 
     @property
     def request(self) -> dict[str, Any]:
-        """What was asked for."""
+        """Request of the sweep."""
         if "request" not in self._data:
             self.refresh()
         return dict(self._data["request"])
@@ -241,7 +241,7 @@ class Sweep:
         return self
 
     def events(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """What happens to it from now on, as it happens, until every point is final.
+        """Events from now on, as they happen, until every point is final.
 
         Pairs of a name and data: `sweep` with the sweep in its present state, `point` with the `ordinals` of points
         that came to a new `state` at a time `at`.
@@ -266,12 +266,12 @@ class Sweep:
         return Table.from_json(self._client.get_json(f"{self.path}/table"))
 
     def verification(self) -> Table:
-        """What verifying some of its points by the reference has shown (`Client.submit(verify=...)`).
+        """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).
 
         One row a verified point: for each statistic, such as `orbit_radius_rms_49`, its value, that of the reference
         (`reference_orbit_radius_rms_49`) and the bias (`bias_orbit_radius_rms_49`), relative to the reference or, of
         frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and what the accuracy
-        promises; `attributes["warnings"]` says where that is exceeded.
+        promises; `attributes["warnings"]` shows where that is exceeded.
         """
         return Table.from_json(self._client.get_json(f"{self.path}/verification"))
 

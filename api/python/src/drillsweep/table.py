@@ -27,7 +27,7 @@ class Table(Mapping[str, "numpy.ndarray[Any, Any]"]):
     units: dict[str, str] = field(default_factory=dict)
     """Units of the columns that have one; ratios have `1`."""
     attributes: dict[str, Any] = field(default_factory=dict)
-    """What holds for the table as a whole, such as the node, its depth, or a spectrum's peaks."""
+    """Attributes of the table as a whole, such as the node, its depth, or a spectrum's peaks."""
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Table:

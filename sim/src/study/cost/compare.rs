@@ -33,7 +33,7 @@ const MOST_SPURIOUS: usize = 10;
 /// The members of one line of a study.
 pub(super) type Ensemble<'a> = &'a [&'a Measure];
 
-/// What others are compared with: the mean of one or two ensembles.
+/// Reference of a comparison: the mean of one or two ensembles.
 #[derive(Clone, Copy)]
 pub(super) struct Reference<'a> {
     /// Not empty, nor is any of them.

@@ -1,4 +1,4 @@
-//! What is kept of a run: what users read of it, node by node.
+//! Data kept of a run: what users read of it, node by node.
 
 use drillsweep_scenario::{TimeStepping, TimeWindow};
 
@@ -13,7 +13,7 @@ use crate::transient::{MotionRegime, NodeHistory, Records};
 /// Histories are kept of so many members: one to compare, and one to part from it.
 const MEMBERS_WITH_HISTORIES: u32 = 2;
 
-/// What a study keeps of a run.
+/// Data that a study keeps of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
     pub(in crate::study) stepping: TimeStepping,
@@ -45,7 +45,7 @@ pub struct Measure {
     pub(in crate::study) friction: Vec<(f64, f64)>,
 }
 
-/// What is kept of a recorded node.
+/// Data kept of a recorded node.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::study) struct NodeMeasure {
     pub(in crate::study) measured_depth: f64,

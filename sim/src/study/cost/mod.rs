@@ -1,12 +1,12 @@
-//! What accuracy costs: a work-precision study of a scenario.
+//! Cost of accuracy: a work-precision study of a scenario.
 //!
-//! [`plan`] says which runs a study needs, [`Measure`] keeps of a run what users read of it (statistics and lines over the
+//! [`plan`] lists the runs that a study needs, [`Measure`] keeps of a run what users read of it (statistics and lines over the
 //! windows that a summary has), and [`report`] compares. The runs themselves, and their time, are the caller's: nothing here
 //! knows a clock.
 //!
 //! An error is meant against what two methods of different kind both reach. Members of an ensemble share the bias of their
 //! method, and a finer step of the same method may share it too; what an explicit and an implicit method agree on is the
-//! equations' own. Where they do not agree, there is nothing to compare with, and the report says so.
+//! equations' own. If they do not agree, there is nothing to compare with, and the report shows it.
 
 mod compare;
 mod interval;
@@ -30,7 +30,7 @@ use crate::model::ModelError;
 use crate::statics::StaticsError;
 use crate::transient::{MotionRegime, TransientError};
 
-/// What a study compares of a run.
+/// Quantity of a run that a study compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -142,7 +142,7 @@ pub struct CostReport {
     pub recommendations: Vec<Recommendation>,
     /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent where none was asked for.
     pub total: Option<TotalCost>,
-    /// What to doubt.
+    /// Reasons for doubt.
     pub warnings: Vec<String>,
 }
 
@@ -198,7 +198,7 @@ pub struct Agreement {
 pub struct NodeAgreement {
     /// Measured depth of the node \[m\]; absent where the value is the whole string's.
     pub measured_depth: Option<f64>,
-    /// What the two find: lengths \[m\], forces \[N\], speeds \[rad/s\].
+    /// Values of the two: lengths \[m\], forces \[N\], speeds \[rad/s\].
     pub values: [f64; 2],
     /// Their relative difference.
     pub difference: f64,
@@ -243,7 +243,7 @@ pub struct CostRow {
     pub elements: usize,
     /// Steps made by the first member.
     pub steps: u64,
-    /// Parts into which each step was cut so that the contact sweeps are stable.
+    /// Parts into which each step was cut so that the contact iterations are stable.
     pub step_subdivisions: u32,
     /// Simulated time of the first member \[s\]; 0 where it failed.
     pub simulated_time: f64,
@@ -256,7 +256,7 @@ pub struct CostRow {
     /// Speed relative to RK4 with the longest of its fixed steps, usually 0.95 of its stability limit on the mesh, by processor time per simulated
     /// second, or of runs that settle by that of the whole run; absent where the study has none.
     pub speed_over_rk4: Option<f64>,
-    /// What it found, against the reference; absent where it failed.
+    /// Its errors against the reference; absent if it failed.
     pub errors: Option<CostErrors>,
     /// Why it failed.
     pub failure: Option<String>,
@@ -324,7 +324,7 @@ pub struct StatisticError {
 }
 
 impl StatisticError {
-    /// What the bias may be at most: its size and half its interval's width, at the worst node.
+    /// Bound of the bias: its size and half its interval's width, at the worst node.
     pub fn bound(&self) -> f64 {
         self.bias.abs() + self.half_width.unwrap_or(0.0)
     }

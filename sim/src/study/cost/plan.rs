@@ -25,7 +25,7 @@ const ESDIRK4_STEP: f64 = 1.25e-4;
 /// on a mesh so fine is a few microseconds, and of ESDIRK4.
 const SETTLED_STEPS: [f64; 2] = [6.25e-5, 1e-3];
 
-/// Most contact sweeps of the reference's implicit methods.
+/// Most contact iterations of the reference's implicit methods.
 const REFERENCE_SWEEPS: u32 = 30;
 
 /// Factor on the scenario's element lengths that the reference of runs that settle has: finer than the 0.4 of the accuracy `reference`.
@@ -37,9 +37,9 @@ const SETTLED_MESHES: [f64; 2] = [2.0, 0.5];
 /// One line of a study: one stepping of one scenario, run by one or more members.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedRow {
-    /// What it is for.
+    /// Its role.
     pub role: Role,
-    /// What the line is called; see [`CostRow::name`](super::CostRow::name).
+    /// Name of the line; see [`CostRow::name`](super::CostRow::name).
     pub name: String,
     /// The scenario to simulate, with duration, windows and accuracy of the study.
     pub scenario: Scenario,
@@ -47,7 +47,7 @@ pub struct PlannedRow {
     pub members: Range<u32>,
 }
 
-/// What a line of a study is for.
+/// Role of a line of a study.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
     /// One of the two methods that make the reference; in an ablation the whole scenario.

@@ -34,19 +34,19 @@ pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
 pub struct TotalCost {
     /// Wanted relative error of orbit size over the orbit window, mesh and time together.
     pub wanted: f64,
-    /// What orbit sizes tend to with the mesh, node by node; empty where the mesh's part is not known.
+    /// Limits of the orbit sizes with the mesh, node by node; empty if the mesh's part is not known.
     pub limits: Vec<MeshLimit>,
-    /// What each mesh is off by, from coarse to fine; empty where it is not known.
+    /// Error of each mesh, from coarse to fine; empty if it is not known.
     pub meshes: Vec<MeshPart>,
     /// The cheapest that keeps to what is wanted; absent where nothing does.
     pub choice: Option<TotalChoice>,
-    /// What stands in the way where nothing does.
+    /// Obstacle if nothing keeps to it.
     pub stopped_by: Option<StoppedBy>,
     /// The recommendation in words.
     pub text: String,
 }
 
-/// What the orbit size of one node tends to as the mesh gets finer.
+/// Limit of the orbit size of one node as the mesh gets finer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct MeshLimit {
@@ -59,7 +59,7 @@ pub struct MeshLimit {
     pub orbit_size: f64,
 }
 
-/// What a mesh is off by.
+/// Error of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct MeshPart {
@@ -102,7 +102,7 @@ pub struct TotalChoice {
     pub cpu_time: f64,
 }
 
-/// What stands in the way of a whole error.
+/// Obstacle to the wanted whole error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -233,7 +233,7 @@ fn words(report: &CostReport, choice: &TotalChoice) -> String {
     )
 }
 
-/// What is to be said where meshes do not converge as extrapolation asks; nothing where they do.
+/// Doubt if meshes do not converge as extrapolation asks; nothing if they do.
 fn doubt(limits: &[MeshLimit]) -> String {
     let without: Vec<_> = limits
         .iter()
@@ -273,7 +273,7 @@ fn time_error(report: &CostReport, row: &CostRow) -> Option<f64> {
     one_that_holds(report, row).map(bound).try_fold(0.0, |most, error| Some(f64::max(most, error?)))
 }
 
-/// What each mesh that ran is off by, and what orbit sizes tend to; or why neither is known.
+/// Error of each mesh that ran, and limits of the orbit sizes; or why neither is known.
 fn mesh_parts(report: &CostReport, base: &Scenario) -> Result<(Vec<MeshLimit>, Vec<MeshPart>), String> {
     if wall_depends_on_mesh(base) {
         return Err(WALL_OF_NODES.to_owned());

@@ -83,8 +83,8 @@ impl Axis {
         }
     }
 
-    /// What is wrong with the axis itself: member (a JSON Pointer below the axis, empty for the axis), what
-    /// was given, and what would be valid. Whether a value makes sense physically is the scenario's matter.
+    /// Problems of the axis itself: member (a JSON Pointer below the axis, empty for the axis), the value
+    /// given, and what would be valid. Whether a value makes sense physically is the scenario's matter.
     pub(crate) fn problems(&self) -> Vec<(&'static str, serde_json::Value, String)> {
         let mut problems = Vec::new();
         match self {
@@ -150,7 +150,7 @@ struct AxisFields {
     scale: Option<Scale>,
 }
 
-/// What is given is a value: a `null` is neither one nor the absence of one.
+/// Takes what is given as a value: a `null` is neither one nor the absence of one.
 fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }

@@ -1,4 +1,4 @@
-//! What a request would become, without storing or simulating anything.
+//! Preview of a request, without storing or simulating anything.
 
 use drillsweep_sim::study::plan::{MachineSpeed, Plan};
 use indexmap::IndexMap;
@@ -10,7 +10,7 @@ use crate::problem::FieldProblem;
 /// Points whose plans stand for all of a sweep's.
 const PLANNED_POINTS: usize = 16;
 
-/// What a request would become, without storing anything.
+/// Preview of a request, without storing anything.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct DryRun {
@@ -38,7 +38,7 @@ pub struct DryRun {
     /// The reference runs that would verify some of them; absent where none is verified.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<PlannedVerification>,
-    /// What can be simulated but is probably not meant.
+    /// Warnings about what can be simulated but is probably not meant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
 }
@@ -68,7 +68,7 @@ pub struct PlannedPoint {
 }
 
 impl DryRun {
-    /// What an expanded request would become: `known` of its points have a result, and `known_references` of the runs that verify
+    /// Preview of an expanded request: `known` of its points have a result, and `known_references` of the runs that verify
     /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is what a worker measured last, and
     /// `workers` are there to share the rest.
     pub fn new(

@@ -1,4 +1,4 @@
-//! What happens to a sweep, as it happens.
+//! Events of a sweep, as they happen.
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};

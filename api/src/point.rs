@@ -100,7 +100,7 @@ pub struct Failure {
     /// The name given to the sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep_name: Option<String>,
-    /// Whose sweep it is.
+    /// Owner of the sweep.
     pub owner: String,
     /// When it failed.
     pub at: Timestamp,
@@ -149,7 +149,7 @@ pub struct ArtifactEntry {
     pub link: String,
 }
 
-/// What an archive of a sweep holds, and what it lacks: `manifest.json` in it.
+/// Contents of an archive of a sweep, and what it lacks: `manifest.json` in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ExportManifest {
@@ -201,7 +201,7 @@ pub struct PointDetail {
 pub struct PointError {
     /// The class of failure.
     pub class: FailureClass,
-    /// What happened, in words.
+    /// Explanation in words.
     pub reason: String,
     /// Simulated time at which it happened \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -221,7 +221,7 @@ impl PointError {
     }
 }
 
-/// What kind of failure ended a point.
+/// Class of the failure that ended a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

@@ -192,7 +192,7 @@ pub struct ProblemDetails {
     pub title: String,
     /// The HTTP status.
     pub status: u16,
-    /// What is wrong this time.
+    /// Explanation of this occurrence.
     pub detail: String,
     /// Identifies this occurrence; the same id stands in the service's log.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -216,10 +216,10 @@ pub struct FieldProblem {
     /// Name of the path, query or header parameter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parameter: Option<String>,
-    /// What was given; absent when nothing was.
+    /// Value that was given; absent if none was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub got: Option<Value>,
-    /// What is wrong and what would be valid.
+    /// Explanation of the problem, and what would be valid.
     pub detail: String,
 }
 

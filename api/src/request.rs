@@ -1,4 +1,4 @@
-//! What a client asks for: a sweep, or a single run.
+//! Requests of a client: a sweep, or a single run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +33,7 @@ pub struct SweepRequest {
         )
     )]
     pub name: Option<String>,
-    /// Whose share of the workers the sweep counts against; absent means `default`. Where tokens are in use it is the token's
+    /// Owner, whose share of the workers the sweep counts against; absent means `default`. If tokens are in use it is the token's
     /// owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
@@ -55,8 +55,8 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
     #[cfg_attr(feature = "openapi", schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120})))]
     pub set: BTreeMap<String, Value>,
-    /// What is kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
-    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says. A point of 60 s takes some 4 MB in full,
+    /// Outputs that are kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as in the scenario. A point of 60 s takes some 4 MB in full,
     /// 0.5 MB as spectra and nothing as a summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(example = "full"))]
@@ -89,7 +89,7 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
     pub samples: Option<u32>,
-    /// What these designs are drawn from, any whole number from 0; 0 unless given. The same seed draws the same points, always.
+    /// Seed of these designs, any whole number from 0; 0 unless given. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
     pub seed: Option<u64>,
@@ -101,7 +101,7 @@ pub struct SweepRequest {
     /// them below 1, usual 0.02 to 0.1 (rounded, but one at least), or a number of them, 1 or more; absent means none. A reference
     /// run takes three to four times as long as one at `standard`. They are spread over the order of the points, the same for the
     /// same request; of points that are added later as many are verified as make up that part, or that number, of the whole sweep.
-    /// What is found is at `GET /v1/sweeps/{id}/verification`.
+    /// Results are at `GET /v1/sweeps/{id}/verification`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(exclusive_minimum = 0.0, example = 0.05))]
     pub verify: Option<f64>,
@@ -128,7 +128,7 @@ pub struct RunRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$"))]
     pub name: Option<String>,
-    /// Whose share of the workers the run counts against; absent means `default`. Where tokens are in use it is the token's owner.
+    /// Owner, whose share of the workers the run counts against; absent means `default`. If tokens are in use it is the token's owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
     pub owner: Option<String>,
@@ -147,8 +147,8 @@ pub struct RunRequest {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
     #[cfg_attr(feature = "openapi", schema(example = json!({"mud.flow_rate": 0.04})))]
     pub set: BTreeMap<String, Value>,
-    /// What is kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
-    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as the scenario says.
+    /// Outputs that are kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
+    /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as in the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(example = "full"))]
     pub outputs: Option<Outputs>,
@@ -204,7 +204,7 @@ pub struct AppendRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
     pub samples: Option<u32>,
-    /// What these designs are drawn from; 0 unless given. For further points of another Latin hypercube give another seed; of a
+    /// Seed of these designs; 0 unless given. For further points of another Latin hypercube give another seed; of a
     /// Sobol sequence, `skip` with the same one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
@@ -268,7 +268,7 @@ impl SweepRequest {
     }
 }
 
-/// What is changed of a sweep; what is absent stays.
+/// Changes to a sweep; absent fields stay as they are.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]

@@ -1,4 +1,4 @@
-//! What follows from a point's scenario alone, without a run: its plan, and its modes of vibration about the equilibrium.
+//! Plan of a point, and its modes of vibration about the equilibrium: both follow from its scenario alone, without a run.
 
 use std::fmt::Display;
 

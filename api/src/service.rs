@@ -1,4 +1,4 @@
-//! What the service says about itself.
+//! Answers of the service about itself.
 
 use drillsweep_scenario::{Scenario, ScenarioRequest};
 use jiff::Timestamp;
@@ -85,7 +85,7 @@ pub struct ScenarioList {
 pub struct ScenarioEntry {
     /// Its name, as a sweep's `preset`.
     pub name: String,
-    /// What it is, in a line.
+    /// Description in a line.
     pub description: String,
     /// The whole scenario.
     pub link: String,
@@ -97,7 +97,7 @@ pub struct ScenarioEntry {
 pub struct ScenarioDetail {
     /// Its name, as a sweep's `preset`.
     pub name: String,
-    /// What it is, in a line.
+    /// Description in a line.
     pub description: String,
     /// The scenario.
     pub scenario: Box<Scenario>,
@@ -108,13 +108,13 @@ pub struct ScenarioDetail {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
-    /// What the text is written in.
+    /// Format of the text.
     pub format: ScenarioFormat,
     /// The whole file: a scenario, or `preset` or `scenario` with changes in `set`.
     pub text: String,
 }
 
-/// What a scenario file is written in.
+/// Format of a scenario file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
@@ -126,7 +126,7 @@ pub enum ScenarioFormat {
 }
 
 impl ScenarioFile {
-    /// What the file asks for. It is not validated yet.
+    /// Request of the file. It is not validated yet.
     ///
     /// # Errors
     /// The first place where the text is not of its format, or no scenario.
@@ -217,12 +217,12 @@ pub struct Collection {
     /// When one ended last; before `started` while one is under way, or where the last one failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<Timestamp>,
-    /// What that deleted.
+    /// Deletions of the one that ended last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deleted: Option<Collected>,
 }
 
-/// What a collection deleted.
+/// Deletions of a garbage collection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(default)]
@@ -270,13 +270,13 @@ pub struct Login {
 pub struct Session {
     /// Whether the service asks for tokens.
     pub tokens_required: bool,
-    /// Whose sweeps are submitted in the session; absent where there is none.
+    /// Owner of the sweeps that are submitted in the session; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub owner: Option<String>,
     /// The name of its token.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// What the token allows: `read`, `submit` or `admin`.
+    /// Permissions of the token: `read`, `submit` or `admin`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scope: Option<String>,
     /// When the session ends.

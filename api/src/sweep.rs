@@ -17,7 +17,7 @@ pub struct Sweep {
     /// The name given to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Whose share of the workers it counts against.
+    /// Owner, whose share of the workers it counts against.
     pub owner: String,
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -52,14 +52,13 @@ pub struct Sweep {
     /// the sweep begins with it.
     #[serde(default)]
     pub revision: u64,
-    /// What can be simulated but is probably not meant; in the answer to a submission only.
+    /// Warnings about what can be simulated but is probably not meant; in the answer to a submission only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
-    /// What was asked for; left out of lists.
+    /// Request of the sweep; left out of lists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,
-    /// What was asked for later, the points of each after those before: the latest hundred requests, all in an export; left out of
-    /// lists.
+    /// Later requests, the points of each after those before: the latest hundred, all in an export; left out of lists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub appended: Vec<AppendRequest>,
     /// Where to read more.
@@ -79,7 +78,7 @@ pub struct WaitingFor {
 }
 
 impl WaitingFor {
-    /// What points of a version wait for beside workers of other versions.
+    /// Worker that points of a version wait for, given the versions of the workers that are there.
     pub fn new(physics_version: i64, worker_physics_versions: Vec<i64>) -> Self {
         let others: Vec<String> = worker_physics_versions.iter().map(i64::to_string).collect();
         let there = match others.as_slice() {
@@ -92,11 +91,11 @@ impl WaitingFor {
     }
 }
 
-/// What goes with a sweep that is deleted.
+/// Data that go with a sweep that is deleted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SweepDeletion {
-    /// Whether this only tells what would be deleted.
+    /// Whether this only shows what would be deleted.
     pub dry_run: bool,
     /// Points of the sweep.
     pub points: u64,
@@ -180,14 +179,14 @@ pub struct ColumnList {
 pub struct ColumnEntry {
     /// Its name; `GET /v1/quantities` says what it stands for.
     pub name: String,
-    /// What its values are.
+    /// Kind of its values.
     pub kind: ColumnKind,
     /// The unit of its values, where they have one; `1` of ratios.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }
 
-/// What the values of a column are; of every kind some may be missing.
+/// Kind of the values of a column; of every kind some may be missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -227,7 +226,7 @@ pub struct SweepLinks {
     pub points: String,
     /// One row a point, with its summary.
     pub table: String,
-    /// What verifying a sample of the points has shown.
+    /// Results of verifying a sample of the points.
     pub verification: String,
     /// A stream of events.
     pub events: String,

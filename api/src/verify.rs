@@ -8,7 +8,7 @@ use serde_json::Value;
 /// (Weyl 1916; of all numbers its spread is the most even).
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// What is wrong with a wish to verify so much, in words: it must be a part of the points or a whole number of them.
+/// Problem of a value of `verify`, in words: it must be a part of the points or a whole number of them.
 pub(crate) fn verify_problem(verify: f64) -> Option<&'static str> {
     let is_part = verify > 0.0 && verify < 1.0;
     let is_number = verify >= 1.0 && verify.is_finite() && verify.fract() == 0.0;
@@ -40,7 +40,7 @@ pub fn sample(verify: f64, total: usize, verified: usize, added: usize) -> Vec<u
     (0..number).map(part).collect()
 }
 
-/// What the scenario of this JSON text promises; nothing where another release has written it otherwise.
+/// Promise of the scenario of this JSON text; none if another release has written it otherwise.
 pub fn promise_of_scenario(json: &str) -> Option<Promise> {
     let scenario: Value = serde_json::from_str(json).ok()?;
     Accuracy::deserialize(scenario.get("accuracy")?).ok()?.promise()

@@ -41,7 +41,7 @@ const SAMPLES: u32 = 60_000;
 const POINTS: u32 = 20_000;
 const FIELDS: u32 = 50;
 
-/// What the program sets for itself when it serves: glibc reads it at the start only.
+/// Settings that the program makes for itself when it serves: glibc reads them at the start only.
 const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 fn main() {

@@ -25,7 +25,7 @@ fn main() {
     divan::main();
 }
 
-/// What keeps the cores busy, until it is dropped.
+/// Processes that keep the cores busy, until this is dropped.
 struct Load(Vec<Child>);
 
 impl Load {

@@ -256,7 +256,7 @@ impl Drop for Place {
     }
 }
 
-/// What counts as one address: an address of IPv4, a /64 of IPv6, which is what one customer gets at least.
+/// Network that counts as one address: an address of IPv4, a /64 of IPv6, which is what one customer gets at least.
 pub(crate) fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {
@@ -272,7 +272,7 @@ struct Patient {
     patience: Duration,
     /// Until when the client has to take something that waits for it.
     waiting: Option<Pin<Box<Sleep>>>,
-    /// What is left of a refusal that stands in for one without a problem.
+    /// Rest of a refusal that stands in for one without a problem.
     refusal: Option<VecDeque<u8>>,
 }
 
@@ -309,7 +309,7 @@ impl Patient {
     }
 }
 
-/// What is said instead of an answer that the HTTP library itself gives to a request that it does not read to its end: a target or header
+/// Refusal in place of an answer that the HTTP library itself gives to a request that it does not read to its end: a target or header
 /// so long that no route ever sees it. Such an answer has no body.
 fn refusal(answer: &[u8]) -> Option<Vec<u8>> {
     let is_bare = || answer.windows(19).any(|window| window.eq_ignore_ascii_case(b"content-length: 0\r\n"));

@@ -1,4 +1,4 @@
-//! What a cost study found, for people: a text for terminals, a table, and which error a chart shows.
+//! Results of a cost study, for people: a text for terminals, a table, and which error a chart shows.
 
 mod measure;
 mod summary;

@@ -39,7 +39,7 @@ pub struct SummaryRow {
     pub cpu_per_simulated_second: Option<f64>,
     /// Speed relative to RK4 with steps of [`SummaryRow::rk4_step`].
     pub speed_over_rk4: Option<f64>,
-    /// What a named accuracy promises, and whether it keeps it; absent for others.
+    /// Promise of a named accuracy, and whether it keeps it; absent for others.
     pub promise: Option<PromiseCheck>,
     /// Lines above a twentieth of the reference's highest that the reference does not have; absent where that is unknown.
     pub spurious_lines: Option<usize>,

@@ -12,7 +12,7 @@ use drillsweep_sim::transient::MotionRegime;
 
 use super::{step_text, three_digits};
 
-/// What stands in a cell without a value.
+/// Text of a cell without a value.
 const ABSENT: &str = "-";
 
 /// The study in words and aligned columns.
@@ -92,7 +92,7 @@ pub fn text(report: &CostReport) -> String {
     text
 }
 
-/// What was run, over which windows, and against what.
+/// Heading: the runs, over which windows, and against what.
 fn head(report: &CostReport) -> String {
     let name = if report.scenario.is_empty() { "the scenario" } else { &report.scenario };
     let subject = if report.effects.is_empty() { "what accuracy costs" } else { "what each effect does" };
@@ -223,7 +223,7 @@ fn line_columns(rows: &[&CostRow]) -> [Cells; 2] {
     ]
 }
 
-/// What each line is off by in every statistic.
+/// Error of each line in every statistic.
 fn statistic_columns(rows: &[&CostRow]) -> [Cells; 5] {
     [
         statistic("orbit size", rows, Quantity::OrbitSize),
@@ -268,7 +268,7 @@ fn effect_columns(report: &CostReport, rows: &[&CostRow]) -> Vec<Cells> {
     columns
 }
 
-/// What another mesh or another physics changes.
+/// Changes that another mesh or another physics makes.
 fn change_columns(rows: &[&CostRow]) -> Vec<Cells> {
     let mut columns = vec![
         errors("statics", rows, |errors| Some(errors.static_position)),
@@ -308,7 +308,7 @@ fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
     ]
 }
 
-/// What each mesh is off by and what orbit sizes tend to, where that is known; then the recommendation.
+/// Error of each mesh and limits that orbit sizes tend to, if known; then the recommendation.
 fn total_text(total: &TotalCost) -> String {
     let mut text = String::new();
     if !total.meshes.is_empty() {

@@ -1,4 +1,4 @@
-//! What a request expands into, and what a point is known by.
+//! Expansion of a request, and keys of its points.
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use drillsweep_sim::PHYSICS_VERSION;
@@ -15,7 +15,7 @@ const OTHER_ACCURACIES: usize = 5000;
 /// Keys of points, each with that of the same point with everything kept, where it keeps less.
 pub type PointKeys = Vec<(PointKey, Option<PointKey>)>;
 
-/// What a request expands into: one scenario, and what each point changes in it.
+/// Expansion of a request: one scenario, and the changes of each point to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
     /// Preset or scenario with the changes of the request. At the swept fields it has the values of point 1.
@@ -26,7 +26,7 @@ pub struct Expansion {
     pub points: Vec<SweepPoint>,
     /// The reference runs that verify some of the points, as [`Expansion::references`] gives them, where the request wants some.
     pub verification: Option<Box<Expansion>>,
-    /// What can be simulated but is probably not meant, with JSON Pointers into the request.
+    /// Warnings about what can be simulated but is probably not meant, with JSON Pointers into the request.
     pub warnings: Vec<FieldProblem>,
 }
 
@@ -59,7 +59,7 @@ impl Expansion {
         Some(AccuracyPreset::ALL.into_iter().map(keys_at).collect())
     }
 
-    /// What a point changes in the base, by path: with [`compose`] the point's scenario again.
+    /// Changes of a point to the base, by path: with [`compose`] the point's scenario again.
     pub fn changes(&self, point: &SweepPoint) -> Map<String, Value> {
         let change = |(name, value): (&AxisName, &f64)| (name.scenario_path().to_owned(), number(*value));
         self.axes.iter().zip(&point.values).map(change).collect()

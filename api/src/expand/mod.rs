@@ -100,7 +100,7 @@ pub(crate) mod tests {
         serde_json::from_value(body).unwrap()
     }
 
-    /// What a refused request is refused for: pointer, value and message.
+    /// Problems of a refused request: pointer, value and message.
     pub(super) fn problems(body: Value) -> Vec<(String, Option<Value>, String)> {
         let details = expand(&request(body)).expect_err("the request must be refused");
         assert_eq!(details.status, 422);

@@ -1,4 +1,4 @@
-//! What is wrong with a request, and where in it that is written.
+//! Problems of a request, and their places in it.
 
 use std::collections::HashMap;
 use std::iter::once;

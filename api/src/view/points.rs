@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::point::{PointError, PointState};
 
-/// What the table needs to know of a point.
+/// Data of a point that the table needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointSummary {
     /// Number of the point in its sweep, from 1.

@@ -1,4 +1,4 @@
-//! What verifying a sample of a sweep's points shows: the bias of each statistic against the reference.
+//! Results of verifying a sample of a sweep's points: the bias of each statistic against the reference.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ impl Statistic {
         (&columns::LINE_FREQUENCY_HZ, Statistic::LineFrequency),
     ];
 
-    /// That of a field of the summary, if its bias is reported.
+    /// Statistic of a field of the summary, if its bias is reported.
     fn of(name: &str) -> Option<Self> {
         let name = Name::parse(name).filter(|name| name.variant == Variant::Value && name.place.is_some())?;
         let is_it = |(quantity, _): &&(&Quantity, Statistic)| *quantity == name.quantity;
@@ -50,7 +50,7 @@ impl Statistic {
         bias.is_finite().then_some(bias)
     }
 
-    /// What is promised of it; nothing of mean radii and of frequencies.
+    /// Promise for it; none for mean radii and for frequencies.
     fn promised(self, promise: Option<Promise>) -> Option<f64> {
         match self {
             Statistic::OrbitSize => Some(promise?.orbit_size),
@@ -147,7 +147,7 @@ impl VerifiedPoint {
     }
 }
 
-/// What the verified points show of one statistic.
+/// Bias of one statistic at the verified points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct StatisticBias {
@@ -163,7 +163,7 @@ pub struct StatisticBias {
     pub largest: f64,
     /// The point that has it.
     pub largest_at: u32,
-    /// What the sweep's accuracy promises; absent where it promises nothing.
+    /// Promise of the sweep's accuracy; absent if it promises nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promised: Option<f64>,
     /// Points whose bias exceeds what is promised.
@@ -180,12 +180,12 @@ pub struct WorstBias {
     pub ordinal: u32,
     /// The bias, relative to the reference.
     pub bias: f64,
-    /// What the sweep's accuracy promises; absent where it promises nothing.
+    /// Promise of the sweep's accuracy; absent if it promises nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promised: Option<f64>,
 }
 
-/// What the verified points of a sweep show.
+/// Findings at the verified points of a sweep.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Findings {
     /// Statistics by their names in the summary.
@@ -195,7 +195,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// What these points show, of an accuracy that promises this.
+    /// Findings at these points, of an accuracy with this promise.
     pub fn new(points: &[VerifiedPoint], promise: Option<Promise>) -> Self {
         let mut biases: IndexMap<String, Vec<(u32, f64)>> = IndexMap::new();
         for point in points {
@@ -226,7 +226,7 @@ impl Findings {
         })
     }
 
-    /// What a picture of a column says below its title: of the column's own bias, else of the worst of orbit size.
+    /// Caption of a picture of a column, below its title: of the column's own bias, else of the worst of orbit size.
     pub fn caption(&self, column: &str) -> Option<String> {
         let (name, bias) = match self.statistics.get_key_value(column) {
             Some((name, bias)) => (name, bias),

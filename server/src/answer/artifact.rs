@@ -119,7 +119,7 @@ pub(crate) struct NodeMotion {
 }
 
 impl SpectrumSource {
-    /// What a point that has a result has: its histories, or where it kept none its spectra.
+    /// Source at a point that has a result: its histories, or if it kept none its spectra.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
         let key = result_key(store, sweep, n).await?;
         let artifacts = store.artifacts(&key).await?;

@@ -42,7 +42,7 @@ pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>
     Body::from_stream(chunks.fuse())
 }
 
-/// What breaks off a body.
+/// Error that breaks off a body.
 fn broken_off(error: Error) -> io::Error {
     let detail = error.into_problem().detail;
     tracing::error!(detail, "an answer was broken off");

@@ -1,4 +1,4 @@
-//! What a handler answers when it cannot answer: a problem document.
+//! Errors of handlers: problem documents in place of answers.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

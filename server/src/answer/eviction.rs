@@ -42,7 +42,7 @@ impl Eviction {
     }
 }
 
-/// Who waits for a place, in the order of arrival.
+/// Requests that wait for a place, in the order of arrival.
 pub(crate) struct Queue {
     /// How long somebody waits before others are evicted for them.
     grace: Duration,

@@ -63,9 +63,9 @@ pub(crate) enum Format {
     Png,
 }
 
-/// What a query may ask for.
+/// Format that a query may request.
 pub(crate) trait Asked: Into<Format> {
-    /// Everything that it may ask for; on a tie `Accept` takes what comes first.
+    /// All formats that it may request; on a tie `Accept` takes what comes first.
     const OFFERED: &'static [Format];
 }
 
@@ -189,7 +189,7 @@ fn best(accept: &str, offered: &[Format]) -> Option<Format> {
     chosen
 }
 
-/// What is served, as a file for those who save it.
+/// Answer to serve, as a file for those who save it.
 pub(crate) struct Answer {
     head: Head,
     content: Content,
@@ -270,7 +270,7 @@ impl Answer {
         Self { head, content: Content::Picture(bytes.as_bytes().to_vec()) }
     }
 
-    /// What goes before the body.
+    /// Head that goes before the body.
     pub(crate) fn head(&self) -> Head {
         self.head.clone()
     }
@@ -284,7 +284,7 @@ impl Answer {
         }
     }
 
-    /// What it means that the body could not be written.
+    /// Problem of a body that could not be written.
     pub(crate) fn problem(&self, error: TableError) -> Error {
         match &self.content {
             Content::Part(part) => part.0.problem(error),
@@ -312,8 +312,8 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
     }
 }
 
-/// What tells this program from others that may write the same otherwise, of the same version too: the hash of its file. Where that cannot be
-/// read, each start counts as a program of its own.
+/// Name that distinguishes this program from others that may write the same otherwise, of the same version too: the hash of its file. If
+/// that cannot be read, each start counts as a program of its own.
 static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
     Ok(hash) => hash.to_hex().to_string(),
     Err(error) => {
@@ -330,7 +330,7 @@ fn hash_of_program() -> io::Result<blake3::Hash> {
     Ok(hasher.finalize())
 }
 
-/// What a body goes by, a weak entity tag, since it may be compressed on its way.
+/// `ETag` of a body, a weak one, since it may be compressed on its way.
 #[derive(Debug, Clone)]
 pub(crate) struct Tag(String);
 
@@ -375,7 +375,7 @@ impl Tag {
     }
 }
 
-/// What goes before a body: format, name for those who save it, and tag.
+/// Head of a body: format, name for those who save it, and tag.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
     format: Format,

@@ -1,4 +1,4 @@
-//! What routes and guards read requests by and make their answers from.
+//! Extraction of requests and making of answers, for routes and guards.
 
 pub(crate) mod artifact;
 pub(crate) mod blocking;

@@ -18,7 +18,7 @@ use serde_json::{Map, Value};
 
 use crate::answer::error::{Error, Result};
 
-/// Whose share a sweep counts against when its request does not say.
+/// Owner, whose share a sweep counts against if its request names none.
 const DEFAULT_OWNER: &str = "default";
 
 /// A request and its points as the store takes them.

@@ -182,8 +182,7 @@ impl Stored {
         Ok(table.map_err(|error| self.problem(error))?.widened())
     }
 
-    /// What it means that a thread could not read a part. Where storage has lost it, its point is computed again, and the problem says
-    /// so.
+    /// Problem of a part that a thread could not read. If storage has lost it, its point is computed again, and the problem reports that.
     pub(crate) fn problem(&self, error: TableError) -> Error {
         let failure = self.file.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
         match failure {

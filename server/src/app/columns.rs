@@ -20,7 +20,7 @@ struct Known {
 }
 
 impl KnownColumns {
-    /// Those of a sweep, if it has this version still.
+    /// Columns of a sweep, if it has this version still.
     pub(crate) fn get(&self, sweep: &str, version: i64) -> Option<ColumnList> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let found = known.iter().find(|known| known.sweep == sweep && known.version == version)?;

@@ -1,4 +1,4 @@
-//! What has changed among all sweeps, found once and told to every event stream.
+//! Changes among all sweeps, found once and sent to every event stream.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use tokio::sync::{Mutex, MutexGuard, broadcast};
 /// Batches that a stream may be behind before it is given up; its client resumes.
 const BACKLOG: usize = 64;
 
-/// What was found at one look at the store.
+/// Changes found at one look at the store.
 #[derive(Debug, Default)]
 pub(crate) struct News {
     /// The store's time before the look \[ms since the epoch\]: what changed before it was found by then.
@@ -64,7 +64,7 @@ impl Place<'_> {
         }
     }
 
-    /// What was listed since this was taken last.
+    /// Takes the sweeps that were listed since the last call.
     pub(crate) fn take_listed(&mut self) -> HashSet<String> {
         self.0.as_mut().map(|watched| std::mem::take(&mut watched.listed)).unwrap_or_default()
     }

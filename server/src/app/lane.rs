@@ -173,7 +173,7 @@ impl Place {
         body::send(self.turns, self.eviction, self.held, prepare).await
     }
 
-    /// What holds the place, and when it is evicted, for a body that is written otherwise.
+    /// Guard that holds the place, and its eviction, for a body that is written otherwise.
     pub(crate) fn into_parts(self) -> (impl Send + 'static, Eviction) {
         (self.held, self.eviction)
     }

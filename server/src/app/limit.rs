@@ -1,4 +1,4 @@
-//! What one owner may ask of the service, and how fast.
+//! Limits of one owner: requests, their rate, and open points.
 
 use std::num::NonZeroU32;
 
@@ -8,7 +8,7 @@ use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 
 use crate::answer::error::{Error, Result};
 
-/// What one owner may ask of the service.
+/// Limits of one owner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OwnerLimits {
     /// Requests a second, over longer times.

@@ -1,4 +1,4 @@
-//! What is counted for operators, as Prometheus text.
+//! Metrics for operators, as Prometheus text.
 
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -31,7 +31,7 @@ pub(crate) struct Occupancy {
     pub(crate) refused: u64,
 }
 
-/// What is counted.
+/// Metrics of the service.
 pub(crate) struct Metrics {
     exposition: Exposition,
     requests: Family<RequestLabels, Histogram>,
@@ -102,7 +102,7 @@ impl LaneMetrics {
     }
 }
 
-/// What the database knows, read when it is asked for.
+/// Gauges of what the database knows, read when they are requested.
 #[derive(Default)]
 struct CensusGauges {
     work: Family<StateLabel, Gauge>,

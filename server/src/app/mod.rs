@@ -1,4 +1,4 @@
-//! What the handlers share, and how the service is set up.
+//! State shared by the handlers, and setup of the service.
 
 pub(crate) mod bodies;
 pub(crate) mod columns;
@@ -52,7 +52,7 @@ pub struct Config {
     pub poll_interval: Duration,
     /// How long open requests may take to end once the service is asked to stop.
     pub drain_timeout: Duration,
-    /// What one owner may ask for.
+    /// Limits of one owner.
     pub owner_limits: OwnerLimits,
     /// How long data are kept.
     pub retention: Retaining,
@@ -98,7 +98,7 @@ impl Default for Config {
     }
 }
 
-/// What the handlers share.
+/// State shared by the handlers.
 #[derive(Clone)]
 pub(crate) struct App {
     pub(crate) store: Store,
@@ -114,7 +114,7 @@ pub(crate) struct App {
     pub(crate) polls: Arc<Shares>,
     /// Addresses that send tokens which are not valid.
     pub(crate) strangers: Arc<Strangers>,
-    /// What has changed among all sweeps, for those event streams that tell of all.
+    /// Changes among all sweeps, for those event streams that report all.
     pub(crate) feed: Arc<Feed>,
     pub(crate) columns: Arc<KnownColumns>,
     pictures: Arc<Pictures>,

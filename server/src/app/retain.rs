@@ -11,7 +11,7 @@ const DAY: Duration = Duration::from_secs(86_400);
 /// How long data are kept, and who sees to that.
 #[derive(Debug, Clone)]
 pub struct Retaining {
-    /// What is kept for how long.
+    /// Retention policy: what is kept for how long.
     pub policy: RetentionPolicy,
     /// Time from one collection to the next; none where the service does not collect.
     pub interval: Option<Duration>,

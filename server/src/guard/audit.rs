@@ -1,4 +1,4 @@
-//! Who changed what: a line in the log for every request that changed something.
+//! Audit of changes and their callers: a line in the log for every request that changed something.
 
 use crate::listen::Peer;
 use axum::http::{Method, Uri, header};

@@ -1,4 +1,4 @@
-//! Who asks, and what they may do: one policy over all routes, so that no route can forget it.
+//! Authentication and authorization: one policy over all routes, so that no route can forget it.
 //!
 //! Until the first token exists everybody on this machine may do everything, and the service listens nowhere else.
 //! From then on every request needs a valid token, but for [`OPEN`] routes; tokens that expire or are revoked never
@@ -23,7 +23,7 @@ use crate::guard::audit;
 use crate::guard::caller::Caller;
 use crate::listen::Peer;
 
-/// What everybody may ask for: health checks have no tokens, document and vocabulary are what a client begins with, and the page what people do.
+/// Routes open to everybody: health checks have no tokens, clients begin with document and vocabulary, and people with the page.
 const OPEN: [&str; 8] = [
     "/livez",
     "/readyz",

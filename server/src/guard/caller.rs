@@ -44,7 +44,7 @@ impl Caller {
         }
     }
 
-    /// Whose budget of requests a request is taken from.
+    /// Owner whose budget of requests a request is taken from.
     pub(crate) fn budget(&self) -> &str {
         match self {
             Caller::Local => "",

@@ -1,4 +1,4 @@
-//! What every request passes through.
+//! Layers that every request passes through.
 
 use std::any::Any;
 use std::time::Duration;
@@ -195,7 +195,7 @@ async fn refuse_unclear_hosts(request: Request, next: Next) -> Response<Body> {
     Error::parameter("Host", None, detail).into_response()
 }
 
-/// What connections in the reserve may ask for: what tells how the service is, and costs little.
+/// Paths that connections in the reserve may request: those that show how the service is, and cost little.
 const LIGHT: [&str; 6] = ["/livez", "/readyz", "/v1/queue", "/v1/workers", "/v1/limits", "/v1/retention"];
 
 /// Refuses all else to connections in the reserve.

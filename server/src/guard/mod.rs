@@ -1,4 +1,4 @@
-//! What every request passes through before its route, and what a submission has to pass.
+//! Guards that every request passes through before its route, and checks that a submission has to pass.
 
 pub(crate) mod audit;
 pub(crate) mod auth;

@@ -1,4 +1,4 @@
-//! What the OpenAPI document says of headers and answers that many routes have.
+//! Headers and answers of many routes in the OpenAPI document.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use utoipa::{IntoParams, IntoResponses, ToSchema};
 
 use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
 
-/// What every route may answer instead of a result.
+/// Problems that every route may answer instead of a result.
 pub(crate) struct Problems;
 
 impl IntoResponses for Problems {

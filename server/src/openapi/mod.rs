@@ -40,7 +40,7 @@ fn bound_members(document: &mut Value) {
     }
 }
 
-/// What the document says about the service as a whole, and whose annotations it is made of.
+/// Description of the service as a whole in the document, and the routes and types whose annotations it is made of.
 #[derive(OpenApi)]
 #[openapi(
     info(

@@ -1,4 +1,4 @@
-//! What the vocabulary of quantities says in the OpenAPI document: units of a scenario's fields, and the columns of every table.
+//! Vocabulary of quantities in the OpenAPI document: units of a scenario's fields, and the columns of every table.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -58,11 +58,11 @@ impl CostFormat {
     }
 }
 
-/// What accuracy costs: a point's work-precision study
+/// Cost of accuracy: a point's work-precision study
 ///
 /// Only a point whose scenario has a `cost_study` has one: accuracies, methods, steps and meshes against what two methods of
 /// different kind both reach over the windows that are read, each with its errors and its processor time, and the cheapest way
-/// to some accuracies. Where the two do not agree, it says that no reference exists.
+/// to some accuracies. If the two do not agree, it reports that no reference exists.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -30,7 +30,7 @@ use crate::route::verification::{Verified, memory_of_points};
 /// Points whose files are looked up at once.
 const PAGE: i64 = 200;
 
-/// What an archive holds.
+/// Contents of an archive.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]

@@ -21,7 +21,7 @@ const SHORTEST_INTERVAL: Duration = Duration::from_secs(1);
 /// Sweeps that are read at once.
 pub(crate) const PAGE: usize = 100;
 
-/// What is told of all sweeps from now on: every change after this returns, and perhaps some before it.
+/// News of all sweeps from now on: every change after this returns, and perhaps some before it.
 pub(crate) async fn join(app: &App) -> Result<broadcast::Receiver<Arc<News>>> {
     let mut place = app.feed.place().await;
     if let Some(receiver) = place.join() {
@@ -38,7 +38,7 @@ pub(crate) async fn join(app: &App) -> Result<broadcast::Receiver<Arc<News>>> {
     Ok(receiver)
 }
 
-/// What is known of all sweeps.
+/// Known state of all sweeps.
 struct Watch {
     app: App,
     known: HashMap<String, Known>,
@@ -104,7 +104,7 @@ impl Watch {
         }
     }
 
-    /// What has changed since the last look.
+    /// Finds the changes since the last look.
     async fn look(&mut self) -> Result<News> {
         let at = self.app.store.now_ms().await?;
         for id in self.app.feed.place().await.take_listed() {

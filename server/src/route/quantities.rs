@@ -12,7 +12,7 @@ use crate::answer::error::{Error, Result};
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 
-/// What columns and fields stand for, with their units
+/// Meaning of columns and fields, with their units
 ///
 /// By name: of columns without the number of a node (`u_49` is `u`) and of a spectrum window (`line_amplitude_49_w1`), and without what an
 /// ensemble or a reference makes of them (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, but for frequencies); of a

@@ -46,7 +46,7 @@ pub(crate) async fn list() -> Json<ScenarioList> {
         tag = "scenarios",
         operation_id = "read_scenario",
         request_body = ScenarioFile,
-        responses((status = 200, description = "What the file asks for", body = ScenarioRequest), Problems)
+        responses((status = 200, description = "The request of the file", body = ScenarioRequest), Problems)
     )
 )]
 pub(crate) async fn read(

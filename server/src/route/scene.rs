@@ -1,4 +1,4 @@
-//! What follows from a point's scenario alone: its plan and its modes. Both search an equilibrium, as dry runs do, and take their turn
+//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, as dry runs do, and take their turn
 //! with these.
 
 use axum::Extension;
@@ -24,7 +24,7 @@ use crate::route::results::PointPath;
 /// Memory of an equilibrium with its modes, for a string of usual length \[bytes\].
 pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
 
-/// What a point's scenario calls for and takes
+/// Plan of a point's scenario
 ///
 /// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
 /// the equilibrium shows.

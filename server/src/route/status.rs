@@ -1,4 +1,4 @@
-//! What the service says about itself.
+//! Status of the service: workers, queue, limits and retention.
 
 use std::time::Duration;
 

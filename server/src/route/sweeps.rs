@@ -58,13 +58,13 @@ pub(crate) struct SubmitQuery {
     /// True answers with the points that the request would become, and stores nothing.
     #[serde(default, deserialize_with = "value::truth")]
     dry_run: bool,
-    /// What becomes of points that were computed before, by anyone.
+    /// Policy for points that were computed before, by anyone.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", param(inline))]
     cache: Cache,
 }
 
-/// What becomes of points that were computed before.
+/// Policy for points that were computed before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -306,7 +306,7 @@ async fn plan(app: &App, caller: &Caller, expansion: Expansion, cache: CachePoli
     Ok(place.run(plan).await?.0)
 }
 
-/// What distinguishes two requests with the same key.
+/// Hash that distinguishes two requests with the same key.
 fn request_hash(body: &[u8], cache: Cache) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     hasher.update(body);
@@ -432,13 +432,13 @@ pub(crate) struct ShowQuery {
     #[serde(default, deserialize_with = "value::span")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "30s"))]
     wait: Option<Duration>,
-    /// What ends the wait early.
+    /// Condition that ends the wait early.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", param(inline))]
     until: Until,
 }
 
-/// What a long poll waits for.
+/// Condition that a long poll waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -596,7 +596,7 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
 
 /// Change name, tags, priority, pin or expiry of a sweep
 ///
-/// What is absent stays. A new priority holds for the points that wait, too. With `If-Match` nothing is changed of a sweep that
+/// Absent fields stay as they are. A new priority holds for the points that wait, too. With `If-Match` nothing is changed of a sweep that
 /// somebody else has changed meanwhile (412); that its points have gone on does not count.
 #[cfg_attr(
     feature = "openapi",
@@ -683,7 +683,7 @@ pub(crate) struct DeleteQuery {
             DeleteQuery,
             ("If-Match" = Option<String>, Header, min_length = 1, description = "The `ETag` of the sweep as it was read."),
         ),
-        responses((status = 200, description = "What is deleted, or would be", body = SweepDeletion), Problems)
+        responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
     )
 )]
 pub(crate) async fn delete(

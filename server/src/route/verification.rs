@@ -1,4 +1,4 @@
-//! What verifying a sample of a sweep's points has shown.
+//! Results of verifying a sample of a sweep's points.
 
 use std::collections::HashMap;
 
@@ -43,7 +43,7 @@ pub(crate) struct Verified {
 }
 
 impl Verified {
-    /// Those of a sweep; none where it verifies none.
+    /// Loads the verified points of a sweep; none if it verifies none.
     pub(crate) async fn load(store: &Store, id: &str) -> Result<Self> {
         let records = store.verifications(id).await?;
         let Some(first) = records.first() else { return Ok(Self::default()) };
@@ -99,14 +99,14 @@ impl Verified {
     }
 }
 
-/// What verifying a sample of the points has shown
+/// Results of verifying a sample of the points
 ///
 /// One row a point that the request's `verify` has chosen: `ordinal`, its parameters, the `state` of the reference run, and for each
 /// statistic NAME (orbit sizes, standard deviations of the radius, mean radii, frequencies of the strongest lines; of ensembles the
 /// means over the members) the point's value, that of the reference as `reference_NAME`, and the bias as `bias_NAME`: relative to
 /// the reference, of frequencies in Hz. The attribute `statistics` sums them up by NAME: how many points are `verified`, the `mean`
 /// bias with its 95 % `interval`, the `largest` with the point that has it (`largest_at`), and what the sweep's accuracy has
-/// `promised`, with the number of points `exceeding` it; `warnings` says the latter in words. A sweep that verifies nothing has no rows.
+/// `promised`, with the number of points `exceeding` it; `warnings` reports the latter in words. A sweep that verifies nothing has no rows.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

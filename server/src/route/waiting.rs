@@ -1,4 +1,4 @@
-//! What keeps queued points waiting: that no worker is there which computes their version of the physics.
+//! Reason why queued points wait: no worker is there which computes their version of the physics.
 
 use drillsweep_api::{Sweep, SweepState, WaitingFor};
 

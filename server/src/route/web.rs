@@ -17,8 +17,8 @@ use crate::guard::middleware;
 /// Path, hash and compressed bytes of each file, and what it imports where it is a module.
 const FILES: &[(&str, &str, &[u8], &[&str])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
 
-/// What the page may load: files and answers of this service alone. plotly.js sets styles of its elements, and makes pictures from blobs;
-/// Swagger UI sets styles, too, and has icons in its own text.
+/// Content security policy of the page: it may load files and answers of this service alone. plotly.js sets styles of its elements, and
+/// makes pictures from blobs; Swagger UI sets styles, too, and has icons in its own text.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 
@@ -74,7 +74,7 @@ fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Respons
     Ok((headers, usual(), text.as_str()).into_response())
 }
 
-/// What each module of the page imports: it fetches those of a view at once, which a browser would find one after the other.
+/// Imports of each module of the page: it fetches those of a view at once, which a browser would find one after the other.
 fn imports() -> io::Result<String> {
     let imports = FILES.iter().filter(|(.., imported)| !imported.is_empty());
     let imports: BTreeMap<&str, &[&str]> = imports.map(|(path, .., imported)| (*path, *imported)).collect();

@@ -85,7 +85,7 @@ impl Service {
     }
 }
 
-/// What comes until the connection ends.
+/// Reads until the connection ends.
 async fn rest(connection: &mut TcpStream) -> String {
     let mut bytes = Vec::new();
     // An end by force is an end.

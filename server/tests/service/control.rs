@@ -1,4 +1,4 @@
-//! What a sweep's owner does with it after submitting it.
+//! Control of a sweep by its owner after submitting it.
 
 use axum::http::{Method, StatusCode, header};
 use serde_json::{Value, json};

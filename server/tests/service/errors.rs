@@ -1,4 +1,4 @@
-//! What is answered to requests that cannot be served.
+//! Answers to requests that cannot be served.
 
 use axum::body::Body;
 use axum::http::{Method, Request, header};

@@ -1,4 +1,4 @@
-//! Who may do what, how fast, and what operators see.
+//! Authorization, rate limits, and what operators see.
 
 use std::num::NonZeroU32;
 use std::time::Duration;

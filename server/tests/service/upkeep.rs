@@ -1,4 +1,4 @@
-//! What the service does by itself, time after time.
+//! Upkeep that the service does by itself, time after time.
 
 use std::time::Duration;
 

@@ -103,7 +103,7 @@ pub struct MethodSteps {
     /// Steps \[s\], each a run of its own, by the rules of `accuracy.step`; usual three that halve from one to the next, which show
     /// the order of convergence.
     pub steps: Vec<f64>,
-    /// Contact sweeps a solve, 2 to 1000, 2 unless given, by the rules of `accuracy.contact_sweeps`.
+    /// Contact iterations a solve, 2 to 1000, 2 unless given, by the rules of `accuracy.contact_sweeps`.
     #[serde(default = "two")]
     pub contact_sweeps: u32,
     /// Relative error tolerance of the adaptive step, by the rules of `accuracy.tolerance`; absent means fixed steps.

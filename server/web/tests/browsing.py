@@ -20,9 +20,9 @@ from playwright.sync_api import Locator, Page, expect
 NASTY = '<img src=x onerror="document.title=`taken`"><script>document.title="taken"</script>'
 """A name that would be markup where it was taken for it."""
 GONE = re.compile(r"net::ERR_|502|Failed to load resource")
-"""What a browser itself writes on its console of a server that is gone."""
+"""Message of a browser on its console if a server is gone."""
 REFUSED = re.compile("status of 40[13]")
-"""What it writes of every answer that refuses."""
+"""Its message for every answer that refuses."""
 MINUS = "\N{MINUS SIGN}"
 COMPARED = {
     "profiles": "Profiles",
@@ -142,6 +142,6 @@ def clock(page: Page) -> float:
 
 
 def trace(picture: Locator, number: int) -> dict[str, Any]:
-    """What plotly was given to draw."""
+    """Data that plotly drew."""
     read = "(place, number) => { const { x, y, z } = place.data[number]; return { x: [...x], y: [...y], z }; }"
     return dict(picture.evaluate(read, number))

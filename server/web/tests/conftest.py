@@ -33,7 +33,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def troubles() -> list[str]:
-    """What pages have complained of; a test fails by them at its end, and takes away those that it caused."""
+    """Complaints of pages; a test fails by them at its end, and takes away those that it caused."""
     return []
 
 

@@ -160,7 +160,7 @@ def test_a_point_is_added_to_the_comparison_that_was_opened_last(opened: Opens, 
 
 
 def cells(page: Page, name: str, row: str) -> list[str]:
-    """What a table of a comparison says in a row, by point."""
+    """Row of a table of a comparison, by point."""
     head = page.get_by_role("rowheader", name=row, exact=True)
     found = page.get_by_role("table", name=name, exact=True).get_by_role("row").filter(has=head)
     expect(found).to_be_visible(timeout=30_000)

@@ -310,7 +310,7 @@ def lines_of(page: Page) -> dict[str, str]:
 
 
 def run(*command: str) -> str:
-    """What a command writes; it succeeds."""
+    """Output of a command, which succeeds."""
     environment = {**os.environ, "PATH": f"{Path(binary()).parent}{os.pathsep}{os.environ['PATH']}"}
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60.0, env=environment, check=False)
     assert ended.returncode == 0, ended.stderr

@@ -33,7 +33,7 @@ pub(super) const LARGEST_ENSEMBLE: u32 = 64;
 /// Smallest step \[s\] at which the implicit methods damp what friction drives in torsional modes of single elements.
 const FINEST_UNDAMPED_STEP: f64 = 1e-4;
 
-/// Contact sweeps beyond which a solve has long converged or never will.
+/// Contact iterations beyond which a solve has long converged or never will.
 const MOST_SWEEPS: u32 = 1000;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {

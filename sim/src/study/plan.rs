@@ -133,7 +133,7 @@ const LARGE_MESH: f64 = 5.0;
 /// Nodes of the 200 m case.
 const BASE_NODES: f64 = 297.0;
 
-/// Contact sweeps that are enough for convergence.
+/// Contact iterations that are enough for convergence.
 const CONVERGED_SWEEPS: u32 = 20;
 
 /// Methods whose steps differ in cost.
@@ -142,7 +142,7 @@ enum MethodKind {
     GeneralizedAlpha,
     /// Two contact iterations a stage.
     Esdirk4,
-    /// Contact sweeps until they have converged.
+    /// Contact iterations until they have converged.
     Esdirk4Converged,
     Rk4,
 }

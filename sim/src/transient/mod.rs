@@ -115,7 +115,7 @@ pub struct TransientEffort {
     /// Frequency \[Hz\] up to which the longest step resolves a vibration: its period to a thousandth, and its amplitude to a thousandth
     /// in each period.
     pub resolved_hz: f64,
-    /// Contact sweeps and how far from convergence they ended.
+    /// Contact iterations and how far from convergence they ended.
     pub sweeps: SweepMonitor,
 }
 

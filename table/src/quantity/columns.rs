@@ -344,7 +344,7 @@ quantities! {
     STEPS: "steps", "", -, "steps";
     /// Parts that a recording interval is cut into.
     STEP_SUBDIVISIONS: "step_subdivisions", "", -, "step subdivisions";
-    /// Contact sweeps of a solve.
+    /// Contact iterations of a solve.
     CONTACT_SWEEPS: "contact_sweeps", "", -, "contact sweeps";
     /// Number of elements.
     ELEMENTS: "elements", "", -, "elements";

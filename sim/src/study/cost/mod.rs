@@ -235,7 +235,7 @@ pub struct CostRow {
     pub step: f64,
     /// Tolerance of the adaptive step; absent where it is fixed.
     pub tolerance: Option<f64>,
-    /// Contact sweeps a solve at most (implicit methods).
+    /// Contact iterations a solve at most (implicit methods).
     pub contact_sweeps: u32,
     /// Factor on the mesh's target element lengths, next to the scenario's own at its own accuracy.
     pub mesh_factor: f64,

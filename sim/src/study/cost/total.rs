@@ -90,7 +90,7 @@ pub struct TotalChoice {
     pub step: f64,
     /// Tolerance of the adaptive step; absent where it is fixed.
     pub tolerance: Option<f64>,
-    /// Contact sweeps a solve at most (implicit methods).
+    /// Contact iterations a solve at most (implicit methods).
     pub contact_sweeps: u32,
     /// The mesh's part of the relative error of orbit size.
     pub mesh_error: f64,

@@ -67,6 +67,11 @@ impl Metrics {
             "Leases of silent workers that this process has ended, by the state of their work after that",
             self.expired_leases.clone(),
         );
+        for operation in ["put", "get", "head"] {
+            for outcome in ["succeeded", "failed"] {
+                drop(self.objects.requests.get_or_create(&RequestLabels { operation, outcome }));
+            }
+        }
         registry.register_with_unit(
             "object_request_duration",
             "Time of requests to the object store, retries included, to the first byte of what is read",

@@ -254,6 +254,6 @@ def test_spectrum_and_profile_are_drawn(sweep: Sweep) -> None:
 
 
 def test_lines_have_the_colours_of_the_page() -> None:
-    page = (REPOSITORY / "server" / "web" / "plots.js").read_text(encoding="utf-8")
+    page = (REPOSITORY / "server" / "web" / "draw" / "plots.js").read_text(encoding="utf-8")
     colours = re.findall(r"light: \[(.*)\]", page)[0]
     assert tuple(re.findall("#[0-9a-f]{6}", colours)) == plot.PALETTE

@@ -607,7 +607,7 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
         operation_id = "change_sweep",
         params(
             ("id" = String, Path, description = "Identifier of the sweep"),
-            ("If-Match" = Option<String>, Header, min_length = 1, description = "The `ETag` of the sweep as it was read."),
+            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
         ),
         request_body = SweepPatch,
         responses(
@@ -681,7 +681,7 @@ pub(crate) struct DeleteQuery {
         params(
             ("id" = String, Path, description = "Identifier of the sweep"),
             DeleteQuery,
-            ("If-Match" = Option<String>, Header, min_length = 1, description = "The `ETag` of the sweep as it was read."),
+            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
         ),
         responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
     )

@@ -129,6 +129,19 @@ fn up_prints_where_its_page_and_its_data_are_once_it_listens() {
     assert!(up.0.wait().unwrap().success());
 }
 
+#[test]
+fn up_without_workers_serves_those_of_other_processes_until_it_is_stopped() {
+    let data = tempfile::tempdir().unwrap();
+    let mut up =
+        Logged::start(&mut command(data.path(), &["up", "--workers", "0", "--listen", "127.0.0.1:0"]));
+    let server = up.address();
+    let _worker = crate::worker(data.path());
+    let sweep = submit(&server, &request(0.2, 1, 1));
+    wait(&server, &sweep, completed);
+    up.process.signal(Signal::TERM);
+    assert_eq!(up.ended().code(), Some(0));
+}
+
 /// Processor time of a process so far \[hundredths of a second, as Linux reports it\].
 fn processor_time(process: u32) -> u64 {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();

@@ -411,6 +411,10 @@ async fn keep_workers(
         let stop = stop.subscribe();
         keepers.spawn(async move { keep_worker(command, &store, stop).await });
     }
+    if number == 0 {
+        // The workers of other machines compute.
+        stopped(stop.subscribe()).await;
+    }
     let mut kept = Ok(());
     while let Some(ended) = keepers.join_next().await {
         let ended = ended.map_err(anyhow::Error::from).flatten();

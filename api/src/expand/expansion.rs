@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::canonical::canonical_bytes;
+use drillsweep_sim::canonical::canonical_json;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
@@ -116,12 +116,12 @@ pub fn key_text(key: &PointKey) -> String {
 }
 
 /// The content hash of a scenario: BLAKE3 over a domain tag, the physics version and the scenario's
-/// canonical bytes.
+/// canonical JSON.
 pub fn key(scenario: &Scenario) -> PointKey {
     let mut hasher = blake3::Hasher::new();
     hasher.update(b"drillsweep point\0");
     hasher.update(&PHYSICS_VERSION.to_le_bytes());
-    hasher.update(&canonical_bytes(scenario));
+    hasher.update(canonical_json(scenario).as_bytes());
     hasher.finalize().into()
 }
 

@@ -82,7 +82,7 @@ mod tests {
     use drillsweep_scenario::{Effects, SurveyStation, preset};
 
     use super::*;
-    use crate::canonical::canonical_bytes;
+    use crate::canonical::canonical_json;
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()
@@ -201,6 +201,6 @@ mod tests {
         for &effect in Effect::ALL {
             asked.effects.set(effect, Switch::On);
         }
-        assert_eq!(canonical_bytes(&asked), canonical_bytes(&paper()));
+        assert_eq!(canonical_json(&asked), canonical_json(&paper()));
     }
 }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::TransientError;
 use super::run::{Progress, State};
 use crate::PHYSICS_VERSION;
-use crate::canonical::canonical_bytes;
+use crate::canonical::canonical_json;
 
 /// Everything that a suspended run needs to go on to the same bits, but the samples that it has recorded: whoever keeps those keeps both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     physics_version: u32,
-    scenario: Vec<u8>,
+    scenario: String,
     /// Progress of as many degrees of freedom as the scenario solves for, encoded.
     progress: Vec<u8>,
 }
@@ -41,7 +41,7 @@ impl Checkpoint {
     pub(super) fn new<const D: usize>(scenario: &Scenario, progress: &Progress<D>) -> Self {
         Self {
             physics_version: PHYSICS_VERSION,
-            scenario: canonical_bytes(scenario),
+            scenario: canonical_json(scenario),
             progress: encoded(progress),
         }
     }
@@ -68,7 +68,7 @@ impl Checkpoint {
         if self.physics_version != PHYSICS_VERSION {
             return Err(CheckpointError::OtherPhysicsVersion { found: self.physics_version });
         }
-        if self.scenario != canonical_bytes(scenario) {
+        if self.scenario != canonical_json(scenario) {
             return Err(CheckpointError::OtherScenario);
         }
         let progress: Progress<D> = postcard::from_bytes(&self.progress)?;

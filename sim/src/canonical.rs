@@ -71,9 +71,9 @@ fn canonical(mut tree: Map<String, Value>, defaults: &Defaults) -> String {
 struct Defaults {
     /// Value of the part itself if it is absent; `None` if it is required.
     value: Option<Value>,
-    /// Those of its fields.
+    /// Defaults of its fields.
     fields: BTreeMap<String, Defaults>,
-    /// Those of the elements of a list.
+    /// Defaults of the elements of a list.
     element: Option<Box<Defaults>>,
 }
 

@@ -12,7 +12,9 @@ pub mod beam;
 pub mod canonical;
 pub mod contact;
 pub mod control;
+pub mod drive;
 pub mod effect;
+mod force;
 pub mod freedom;
 pub mod linalg;
 pub mod model;
@@ -23,6 +25,7 @@ pub mod signal;
 pub mod statics;
 pub mod string;
 pub mod study;
+mod term;
 pub mod transient;
 pub mod well;
 

@@ -3,13 +3,12 @@
 use drillsweep_scenario::{Effect, Switch};
 
 use crate::beam::ElementMatrix;
-use crate::effect::{
-    Account, DAMPING, ElementInMotion, MotionTerms, UnbalanceForce, place_of_damping, room, unbalance,
-};
+use crate::effect::{Account, DAMPING, ElementInMotion, MotionTerms, term};
 use crate::freedom::{DOFS, Freedoms};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, clear_held};
 use crate::statics::Equilibrium;
+use crate::term::place_of_damping;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
 ///
@@ -31,8 +30,6 @@ pub struct DynamicSystem<const D: usize = DOFS> {
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
     pub load: NodalVector<D>,
-    /// Unbalance forces.
-    pub unbalance: Vec<UnbalanceForce>,
     /// Speed of rotation \[rad/s\].
     pub rotation_speed: f64,
     /// Degrees of freedom that stay at their equilibrium value.
@@ -77,7 +74,7 @@ impl Model {
             };
             let mut terms = MotionTerms::default();
             for &effect in Effect::ALL.iter().filter(|&&effect| self.effects.is_active(effect)) {
-                room(effect).add_in_motion(&part, &mut terms);
+                term(effect).add_in_motion(&part, &mut terms);
             }
             add_element_matrix(&mut mass, e, &structural_mass);
             if let Some(of_mud) = &terms.mass {
@@ -108,11 +105,6 @@ impl Model {
             stiffness,
             damping_of,
             load,
-            unbalance: if self.effects.unbalance {
-                unbalance::forces(&self.mesh.nodes, self.rotation_speed)
-            } else {
-                Vec::new()
-            },
             rotation_speed: self.rotation_speed,
             held,
         }
@@ -120,7 +112,7 @@ impl Model {
 
     fn held_without(&self, still: impl Fn(Effect) -> bool) -> Vec<[bool; DOFS]> {
         let off = Effect::ALL.iter().filter(|&&effect| still(effect));
-        let still: Vec<usize> = off.filter_map(|&effect| room(effect).moves()).collect();
+        let still: Vec<usize> = off.filter_map(|&effect| term(effect).moves()).collect();
         (0..self.node_count())
             .map(|node| {
                 let mut held = self.held_by_top(node);
@@ -165,7 +157,6 @@ impl DynamicSystem {
             stiffness: reduced(&self.stiffness),
             damping_of: self.damping_of.each_ref().map(reduced),
             load: self.load.iter().map(|load| freedoms.of(load)).collect(),
-            unbalance: self.unbalance.clone(),
             rotation_speed: self.rotation_speed,
             held: self.held.iter().map(|held| freedoms.of(held)).collect(),
         }

@@ -2,6 +2,7 @@
 
 use allocation_counter::measure;
 use drillsweep_scenario::{Accuracy, Integrator, OrbitWindow, Snapshots, TimeStepping, TimeWindow, preset};
+use drillsweep_sim::canonical::canonical_json;
 use drillsweep_sim::control::Control;
 use drillsweep_sim::model::Model;
 use drillsweep_sim::statics::Equilibrium;
@@ -9,6 +10,8 @@ use drillsweep_sim::transient::{Outcome, Transient};
 
 #[test]
 fn steps_allocate_nothing() {
+    // Defaults of scenarios are found once in a process.
+    let _ = canonical_json(&preset("paper-200m").expect("it ships with the crate"));
     let adaptive = TimeStepping { tolerance: Some(1e-6), ..TimeStepping::fixed(Integrator::Rk4, 6e-5) };
     for stepping in [
         TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4),

@@ -3,8 +3,8 @@
 use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
 
-use super::room;
-use super::scene::{LateralWave, Scene};
+use super::term;
+use crate::term::{LateralWave, Scene};
 
 /// Change of frequencies below which the aggressive rule leaves an effect out.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -37,7 +37,7 @@ pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
             Switch::On => (true, "asked for".to_owned()),
             Switch::Off => (false, "switched off".to_owned()),
             Switch::Auto => {
-                let call = (room(effect).called_for)(&Scene { scenario, active: &active });
+                let call = (term(effect).called_for)(&Scene { scenario, active: &active });
                 let change = frequency_change(scenario, effect);
                 let neglects = scenario.effects.auto == AutoRule::Aggressive;
                 if call.active && neglects && change < NEGLIGIBLE {
@@ -68,7 +68,7 @@ pub fn active_effects(scenario: &Scenario) -> ActiveEffects {
 /// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
 /// largest of any section; infinite where no such estimate is made.
 fn frequency_change(scenario: &Scenario, effect: Effect) -> f64 {
-    let Some(estimate) = room(effect).frequency_change else { return f64::INFINITY };
+    let Some(estimate) = term(effect).frequency_change else { return f64::INFINITY };
     let of_section = |section| {
         let change = estimate(&LateralWave::along(section, scenario));
         // Without rotation there is no such wave.

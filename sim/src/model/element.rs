@@ -4,8 +4,9 @@ use drillsweep_scenario::{ActiveEffects, Effect, Mud};
 use nalgebra::Vector3;
 
 use crate::beam::{BeamElement, BeamSection, Chord, ElementMatrix, ElementVector};
-use crate::effect::{ElementAtRest, RestTerms, gravity, room};
+use crate::effect::{ElementAtRest, RestTerms, term};
 use crate::mud::{FlowGeometry, FlowMomentum};
+use crate::term::gravity;
 use crate::well::NodeFrame;
 
 /// The matrices and loads of one element that do not change during the search for the equilibrium.
@@ -82,7 +83,7 @@ impl StringElement {
             ends_at_bit: input.ends_at_bit,
         };
         for &effect in Effect::ALL.iter().filter(|&&effect| input.effects.is_active(effect)) {
-            room(effect).add_at_rest(&element, &mut terms);
+            term(effect).add_at_rest(&element, &mut terms);
         }
         let acceleration = gravity::acceleration(input.effects.gravity);
         let weight = chord.components(&Vector3::new(0.0, 0.0, terms.mass_per_length * acceleration));

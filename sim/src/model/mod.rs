@@ -8,13 +8,15 @@ mod element;
 pub use crate::effect::GRAVITY;
 pub use element::{ElementInput, StringElement};
 
-use std::f64::consts::PI;
+use std::sync::Arc;
 
 use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition, WallLaw};
 
 use crate::beam::{BeamSection, ElementMatrix, ElementVector};
 use crate::contact::{ContactNode, ContactSegment, Wall};
+use crate::drive::Drive;
 use crate::effect::active_effects;
+use crate::force::{At, Dependence, ForceScene, NodalForce, NodeMotion, nodal_forces};
 use crate::freedom::{DOFS, THETA_Z, U, V, W};
 use crate::linalg::{Block, BlockTridiagonal};
 use crate::string::{MeshElement, MeshError, MeshNode, StringMesh};
@@ -38,8 +40,12 @@ pub struct Model {
     pub frames: Vec<NodeFrame>,
     /// Elements from the top.
     pub elements: Vec<StringElement>,
-    /// Speed of rotation \[rad/s\].
+    /// Rotation of the top.
+    pub drive: Drive,
+    /// Speed of the turning frame, the drive's nominal one \[rad/s\].
     pub rotation_speed: f64,
+    /// Forces at nodes but the wall's.
+    pub(crate) forces: Vec<Arc<dyn NodalForce>>,
 }
 
 /// Why a scenario has no model.
@@ -84,14 +90,18 @@ impl Model {
                 })
             })
             .collect();
+        let drive = Drive::new(&scenario.operation);
+        let force_scene = ForceScene { scenario, effects: &effects, nodes: &mesh.nodes, drive: &drive };
         Ok(Self {
             scenario: scenario.clone(),
             effects,
+            forces: nodal_forces(&force_scene),
             wall: Self::wall(scenario, &effects, &mesh, &elements),
             mesh,
             frames,
             elements,
-            rotation_speed: scenario.operation.rotation_speed_rpm * PI / 30.0,
+            rotation_speed: drive.nominal_speed(),
+            drive,
         })
     }
 
@@ -135,7 +145,7 @@ impl Model {
         }
     }
 
-    /// Constant nodal loads, with the mud's drag \[N/m\] on every element (empty where there is none).
+    /// Constant nodal loads, those of weight and torque on bit included, with the mud's drag \[N/m\] on every element (empty where there is none).
     pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
         let mut load = vec![[0.0; DOFS]; self.node_count()];
         for (e, element) in self.elements.iter().enumerate() {
@@ -145,11 +155,62 @@ impl Model {
             }
             add_element_vector(&mut load, e, &f);
         }
-        if let Some(bit) = load.last_mut() {
-            bit[W] += self.scenario.operation.weight_on_bit;
-            bit[THETA_Z] += self.scenario.operation.torque_on_bit;
-        }
+        let at_rest = self.at_rest(&[]);
+        self.add_forces(Dependence::None, &at_rest, &mut load);
         load
+    }
+
+    /// True if any force at nodes but the wall's depends on the motion.
+    pub(crate) fn has_forces_of_motion(&self) -> bool {
+        self.forces.iter().any(|force| force.dependence() == Dependence::Motion)
+    }
+
+    /// Adds the forces at nodes of a dependence to nodal loads.
+    pub(crate) fn add_forces(
+        &self,
+        dependence: Dependence,
+        motion: &dyn Fn(usize) -> NodeMotion,
+        loads: &mut [[f64; DOFS]],
+    ) {
+        for force in self.forces.iter().filter(|force| force.dependence() == dependence) {
+            let (unknowns, memory) = (force.unknowns(), force.memory());
+            let mut forces = vec![[0.0; DOFS]; force.nodes().len()];
+            force.forces(&At { time: 0.0, motion, unknowns: &unknowns, memory: &memory }, &mut forces);
+            for (&node, force) in force.nodes().iter().zip(&forces) {
+                for (load, force) in loads[node].iter_mut().zip(force) {
+                    *load += force;
+                }
+            }
+        }
+    }
+
+    /// Adds stiffness and damping of the forces at nodes, about a motion, to matrices.
+    pub(crate) fn add_force_tangents(
+        &self,
+        motion: &dyn Fn(usize) -> NodeMotion,
+        stiffness: &mut BlockTridiagonal,
+        damping: Option<&mut BlockTridiagonal>,
+    ) {
+        let mut damping = damping;
+        for force in self.forces.iter().filter(|force| force.dependence() == Dependence::Motion) {
+            let (unknowns, memory) = (force.unknowns(), force.memory());
+            let at = At { time: 0.0, motion, unknowns: &unknowns, memory: &memory };
+            force.tangent(&at, &mut |[(row, i), (column, j)], [by_displacement, by_velocity]| {
+                let entry = |value: f64| Block::from_fn(|r, c| if (r, c) == (i, j) { value } else { 0.0 });
+                stiffness.add_block(row, column, &entry(by_displacement));
+                if let Some(damping) = damping.as_deref_mut() {
+                    damping.add_block(row, column, &entry(by_velocity));
+                }
+            });
+        }
+    }
+
+    /// Motion of nodes at rest in the turning frame; zero for nodes without displacements.
+    pub(crate) fn at_rest<'a>(&self, displacement: &'a [[f64; DOFS]]) -> impl Fn(usize) -> NodeMotion + 'a {
+        |node| NodeMotion {
+            displacement: displacement.get(node).copied().unwrap_or([0.0; DOFS]),
+            velocity: [0.0; DOFS],
+        }
     }
 
     /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of

@@ -40,6 +40,8 @@ impl Pencil {
         let system = model.system_of_all_motions(equilibrium);
         let (mut damping, mut stiffness) = (system.damping, system.stiffness);
         add_contact(model, equilibrium, &mut stiffness, &mut damping);
+        let motion = model.at_rest(&equilibrium.displacement);
+        model.add_force_tangents(&motion, &mut stiffness, Some(&mut damping));
         Self::new(system.mass, damping, stiffness, system.held)
     }
 

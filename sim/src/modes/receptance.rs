@@ -6,7 +6,7 @@ use nalgebra::Complex;
 
 use super::Pencil;
 use super::shifted::ShiftedPencil;
-use crate::effect::unbalance;
+use crate::force::unbalance;
 use crate::freedom::{DOFS, THETA_Z, U, V};
 use crate::model::Model;
 
@@ -30,7 +30,7 @@ impl<'a> Receptance<'a> {
     /// Response to the mass unbalance \[m, rad\] of the pencil's model, if the frequency is that of the rotation.
     pub fn to_unbalance(&self, model: &Model) -> Response {
         let mut load = self.no_load();
-        for force in unbalance::forces(&model.mesh.nodes, model.rotation_speed) {
+        for force in unbalance::forces(&model.mesh.nodes, &model.drive) {
             let (sine, cosine) = force.phase.sin_cos();
             // A cos(w t + phase) along u, A sin(w t + phase) along v.
             let along_u = Complex::new(cosine, sine) * force.amplitude;

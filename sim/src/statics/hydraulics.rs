@@ -3,10 +3,11 @@
 use drillsweep_scenario::Mud;
 
 use super::StaticsError;
-use crate::effect::{gravity, mud_drag};
+
 use crate::freedom::{DOFS, U, V};
 use crate::model::Model;
 use crate::mud::{ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures};
+use crate::term::{gravity, mud_drag};
 
 /// Change of the eccentricity over which the slope of the drag is taken.
 const ECCENTRICITY_STEP: f64 = 1e-6;

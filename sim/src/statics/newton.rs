@@ -3,6 +3,7 @@
 use super::{StaticsError, contact_along, contact_at};
 use crate::beam::{ElementMatrix, ElementVector};
 use crate::contact::{Wall, planes};
+use crate::force::Dependence;
 use crate::freedom::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 use crate::linalg::{Block, BlockTridiagonal, Factor};
 use crate::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
@@ -249,6 +250,9 @@ pub(super) fn linearise_with(
             diagonal[(row, V)] -= gradient[1];
         }
     }
+    let at_rest = model.at_rest(displacement);
+    model.add_forces(Dependence::Motion, &at_rest, &mut residual);
+    model.add_force_tangents(&at_rest, &mut tangent, None);
     let held: Vec<[bool; DOFS]> = (0..n).map(|node| model.held_by_top(node)).collect();
     crate::model::clear_held(&mut tangent, &held);
     for (node, held) in held.iter().enumerate() {

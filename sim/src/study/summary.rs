@@ -3,7 +3,7 @@
 use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use serde::Serialize;
 
-use crate::effect::contact;
+use crate::force::wall::contact;
 use crate::model::Model;
 use crate::signal::{
     FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, sample_range, weighted_orbit_statistics,

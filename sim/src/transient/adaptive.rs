@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::TimeStepping;
 
-use super::forces::SweepChange;
+use crate::force::wall::SweepChange;
 
 /// Errors that a step may leave, for a tolerance on the statistics of a run.
 ///

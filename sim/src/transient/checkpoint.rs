@@ -4,7 +4,8 @@ use drillsweep_scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 use super::TransientError;
-use super::run::{Progress, State};
+use super::run::Progress;
+use super::state::State;
 use crate::PHYSICS_VERSION;
 use crate::canonical::canonical_json;
 
@@ -83,28 +84,4 @@ impl Checkpoint {
 
 fn encoded(value: &impl Serialize) -> Vec<u8> {
     postcard::to_stdvec(value).expect("numbers and vectors always encode")
-}
-
-/// Fields as one row of numbers, node by node: serde knows no arrays of a length that is a parameter.
-pub(super) mod nodal {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
-
-    use crate::linalg::NodalField;
-
-    pub(in super::super) fn serialize<S: Serializer, const D: usize>(
-        values: &NodalField<D>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        values.to_nodes().as_flattened().serialize(serializer)
-    }
-
-    pub(in super::super) fn deserialize<'de, T: Deserializer<'de>, const D: usize>(
-        deserializer: T,
-    ) -> Result<NodalField<D>, T::Error> {
-        let flat = Vec::<f64>::deserialize(deserializer)?;
-        match flat.as_chunks::<D>() {
-            (nodes, []) => Ok(NodalField::from_nodes(nodes)),
-            _ => Err(de::Error::invalid_length(flat.len(), &"a multiple of a node's degrees of freedom")),
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::NodeContact;
+use crate::force::wall::NodeContact;
 
 /// Action of the wall on one node over the whole run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

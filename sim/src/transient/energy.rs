@@ -9,12 +9,12 @@ use std::ops::Index;
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::{ContactForces, Forces};
+use super::forces::{ActingForces, Forces};
 use super::forms::{BookedStage, Forms, Integrals, symmetric_part};
 use crate::contact::{ContactNode, ContactSegment, Wall};
-use crate::effect::{
-    ACCOUNTS, Account, Booked, DAMPING, NodalWork, Side, contact, friction, friction_torque, unbalance,
-};
+use crate::effect::{ACCOUNTS, Account, Booked, DAMPING, Side};
+use crate::force::ENTRIES;
+use crate::force::wall::{self, contact, friction, friction_torque};
 use crate::freedom::{Freedoms, THETA_X, THETA_Y, U, V};
 use crate::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::model::{Model, NodalVector};
@@ -23,7 +23,8 @@ use crate::motion::DynamicSystem;
 /// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Work {
-    nodal: NodalWork,
+    /// Of forces, in the order of [`ENTRIES`].
+    forces: [f64; ENTRIES.len()],
     /// Of the matrices that multiply velocities, in the sense of their accounts' sides, in the order of [`DAMPING`].
     damping: [f64; WORKING],
     follower: f64,
@@ -38,6 +39,29 @@ const WORKING: usize = {
     }
     count
 };
+
+/// Places of the wall's entries.
+const NORMAL: usize = place(wall::NORMAL_WORK);
+const FRICTION: usize = place(wall::FRICTION_WORK);
+const ROTATION: usize = place(wall::ROTATION_WORK);
+
+/// Place of an entry in [`ENTRIES`].
+const fn place(entry: &str) -> usize {
+    let mut place = 0;
+    while !is_same(ENTRIES[place], entry) {
+        place += 1;
+    }
+    place
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
 
 /// The accounts of damping.
 fn working() -> impl Iterator<Item = &'static Account> {
@@ -170,25 +194,25 @@ impl<const D: usize> Ledger<D> {
         ledger
     }
 
-    /// Books a stage at `time` that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the contact
-    /// forces that it was solved with. It keeps the vectors and leaves others of their size.
+    /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the forces that it was solved with. It keeps the vectors and leaves others of their size.
     pub(super) fn book(
         &mut self,
         weight: f64,
         velocity: &mut NodalField<D>,
         displacement: &mut NodalField<D>,
-        contact: &ContactForces,
+        acting: &ActingForces,
         forces: &Forces<D>,
-        time: f64,
     ) {
-        let power = self.power(velocity, displacement, contact, forces, time);
-        self.work.nodal.add(weight, &power.nodal);
+        let power = self.power(velocity, displacement, acting, forces);
+        self.book_power(weight, &power);
         self.forms.gather(weight, velocity, displacement);
     }
 
-    /// Books what a stage's power of contact and unbalance comes to in `weight` seconds.
+    /// Books the power of a stage's forces for `weight` seconds.
     pub(super) fn book_power(&mut self, weight: f64, power: &Work) {
-        self.work.nodal.add(weight, &power.nodal);
+        for (work, power) in self.work.forces.iter_mut().zip(&power.forces) {
+            *work += weight * power;
+        }
     }
 
     /// Books what the matrices do along stages: the seconds that each counts, its velocities and displacements.
@@ -196,18 +220,17 @@ impl<const D: usize> Ledger<D> {
         self.forms.add(stages);
     }
 
-    /// Powers \[W\] of contact and unbalance at `time`.
+    /// Powers \[W\] of forces.
     pub(super) fn power(
         &self,
         velocity: &NodalField<D>,
         displacement: &NodalField<D>,
-        contact: &ContactForces,
+        acting: &ActingForces,
         forces: &Forces<D>,
-        time: f64,
     ) -> Work {
         let zero = Four::splat(0.0);
         let (mut normal_power, mut friction_power, mut torque) = (zero, zero, zero);
-        for (i, group) in contact.touching() {
+        for (i, group) in acting.wall.touching() {
             let (x, rates) = (&displacement.groups()[i], &velocity.groups()[i]);
             let (u_rate, v_rate) = (rates[U], rates[V]);
             // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
@@ -218,17 +241,16 @@ impl<const D: usize> Ledger<D> {
             friction_power = friction_power + friction::power(whole, normal);
             torque = torque + group.torque;
         }
-        let along = forces.segments().power(&contact.along, velocity);
+        let along = forces.wall.segments().power(&acting.wall.along, velocity);
         normal_power = normal_power + along.normal;
         friction_power = friction_power + along.friction;
         torque = torque + along.torque;
-        let nodal = NodalWork {
-            unbalance: unbalance::power(forces.unbalance.at(time), velocity),
-            normal_contact: normal_power.sum(),
-            friction: friction_power.sum(),
-            rotation: friction_torque::power_of_rotation(torque.sum(), self.rotation_speed),
-        };
-        Work { nodal, ..Work::default() }
+        let mut powers = [0.0; ENTRIES.len()];
+        powers[NORMAL] = normal_power.sum();
+        powers[FRICTION] = friction_power.sum();
+        powers[ROTATION] = friction_torque::power_of_rotation(torque.sum(), self.rotation_speed);
+        forces.points.each_power(&acting.points, velocity, |entry, power| powers[entry] += power);
+        Work { forces: powers, ..Work::default() }
     }
 
     /// Adds the work of the stages gathered so far.
@@ -271,11 +293,13 @@ impl<const D: usize> Ledger<D> {
         let structure = self.stored(&x) - self.initial_stored;
         let wall = self.stored_by_wall(&x) - self.initial_wall;
         self.motion = [x, v];
+        let forces: [_; ENTRIES.len()] =
+            std::array::from_fn(|place| (ENTRIES[place], self.work.forces[place]));
         let accounts = ACCOUNTS.map(|account| {
             let mut damping = working().zip(self.work.damping);
             let own = damping.find(|(other, _)| other.name == account.name);
-            let Work { nodal, follower, .. } = self.work;
-            (account.value)(&Booked { nodal, matrices: own.map_or(0.0, |(_, work)| work), follower, wall })
+            let matrices = own.map_or(0.0, |(_, work)| work);
+            (account.value)(&Booked { forces: &forces, matrices, follower: self.work.follower, wall })
         });
         let gained = kinetic + structure + wall;
         let balance = ACCOUNTS

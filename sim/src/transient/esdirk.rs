@@ -1,12 +1,14 @@
 //! ESDIRK4(3)6L\[2\]SA, the implicit part of ARK4(3)6L\[2\]SA of Kennedy and Carpenter (2003): order 4, L-stable,
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
-use super::adaptive::StepError;
+use super::adaptive::{self, StepError};
 use super::energy::{Ledger, Work};
-use super::forces::{ContactForces, Forces};
+use super::forces::{ActingForces, Forces, StageAt};
 use super::grid::Grid;
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
-use super::run::{Books, State};
+use super::method::{Method, StepAhead, StepCollapsed, StepMade};
+use super::state::{Books, State};
+use crate::force::UnknownStage;
 use crate::freedom::LATERAL;
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
@@ -60,7 +62,7 @@ pub(super) fn stage_coefficients(step: f64) -> StageCoefficients {
 pub(super) struct Esdirk<const D: usize> {
     /// Steps \[s\] that can be made, the shortest first, with the matrices of their stages.
     levels: Vec<(f64, StageMatrix<D>)>,
-    pub(super) solver: StageSolver<D>,
+    solver: StageSolver<D>,
     /// Of the stages after the first, which is the state at the step's start.
     stages: [Stage<D>; STAGES - 1],
     /// Powers at all stages.
@@ -69,6 +71,8 @@ pub(super) struct Esdirk<const D: usize> {
     local_error: f64,
     acceleration_offset: NodalField<D>,
     velocity_offset: NodalField<D>,
+    /// Unknowns of a stage without the share of its own rates.
+    unknown_base: Vec<f64>,
 }
 
 /// Motion at a stage.
@@ -77,6 +81,57 @@ struct Stage<const D: usize> {
     displacement: NodalField<D>,
     velocity: NodalField<D>,
     acceleration: NodalField<D>,
+    unknowns: Vec<f64>,
+    /// Rates of the unknowns \[1/s\].
+    unknown_rates: Vec<f64>,
+}
+
+impl<const D: usize> Method<D> for Esdirk<D> {
+    fn advance(
+        &mut self,
+        forces: &Forces<D>,
+        StepAhead { time, mut level, grid, tolerances }: StepAhead<'_>,
+        state: &mut State<D>,
+        acting: &ActingForces,
+        books: Books<'_, D>,
+    ) -> Result<StepMade, StepCollapsed> {
+        let nodes = state.displacement.nodes();
+        let (mut next_level, mut rejected, mut unresolved) = (None, 0, 0);
+        loop {
+            self.attempt(level, forces, time, state, acting, books.ledger);
+            let Some(tolerances) = tolerances else { break };
+            let error = self.error(level, forces, time, state);
+            let error = tolerances.relative(&error, books.errors.motion(nodes));
+            let next = adaptive::next_level(level, error).min(grid.top());
+            let is_within = error <= 1.0;
+            if is_within || level == 0 {
+                unresolved = u64::from(!is_within);
+                next_level = Some(next);
+                break;
+            }
+            rejected += 1;
+            level = next;
+        }
+        self.accept(level, state, books);
+        Ok(StepMade {
+            level,
+            next_level,
+            steps: 1,
+            step_range: [grid.step(level); 2],
+            rejected,
+            unresolved,
+            monitor: std::mem::take(&mut self.solver.monitor),
+        })
+    }
+
+    fn peaks(&self) -> &[Four] {
+        self.solver.peaks()
+    }
+
+    fn start_of_step(&self) -> Option<[&NodalField<D>; 3]> {
+        let Stage { displacement, velocity, acceleration, .. } = &self.stages[STAGES - 2];
+        Some([displacement, velocity, acceleration])
+    }
 }
 
 impl<const D: usize> Esdirk<D> {
@@ -89,6 +144,7 @@ impl<const D: usize> Esdirk<D> {
         sweeps: u32,
     ) -> Result<Self, SingularBlock> {
         let zero = NodalField::zeros(initial.len());
+        let unknowns = forces.points.start().unknowns.len();
         let level = |level| {
             let step = grid.step(level);
             Ok((step, StageMatrix::new(system, initial, stage_coefficients(step), forces)?))
@@ -100,52 +156,54 @@ impl<const D: usize> Esdirk<D> {
                 displacement: zero.clone(),
                 velocity: zero.clone(),
                 acceleration: zero.clone(),
+                unknowns: vec![0.0; unknowns],
+                unknown_rates: vec![0.0; unknowns],
             }),
             powers: [Work::default(); STAGES],
             local_error: 0.0,
             acceleration_offset: zero.clone(),
             velocity_offset: zero,
+            unknown_base: vec![0.0; unknowns],
         })
     }
 
-    /// Solves the stages of a step of `level` from `state` at `time`, where the wall pushes with `contact`; neither the state nor any book
+    /// Solves the stages of a step of `level` from `state` at `time`, where forces are `acting`; neither the state nor any book
     /// changes.
-    pub(super) fn attempt(
+    fn attempt(
         &mut self,
         level: u32,
         forces: &Forces<D>,
         time: f64,
         state: &State<D>,
-        contact: &ContactForces,
+        acting: &ActingForces,
         ledger: &Ledger<D>,
     ) {
         let h = self.levels[level as usize].0;
-        self.solver.begin_step(contact);
+        self.solver.begin_step(acting);
         for stage in 1..STAGES {
             self.predict(h, stage, state);
-            let stage_time = time + NODES[stage] * h;
+            self.predict_unknowns(h, stage, state);
             let matrix = &self.levels[level as usize].1;
             let offsets = [&self.acceleration_offset, &self.velocity_offset];
-            self.solver.solve(matrix, forces, stage_time, offsets);
-            let Stage { displacement, velocity, acceleration } = &mut self.stages[stage - 1];
+            let unknowns = UnknownStage { base: &self.unknown_base, factor: DIAGONAL * h };
+            let at = StageAt { time: time + NODES[stage] * h, state: &state.points, unknowns };
+            self.solver.solve(matrix, forces, at, offsets);
+            let of_stage = &mut self.stages[stage - 1];
+            let Stage { displacement, velocity, acceleration, .. } = of_stage;
             self.solver.rates(matrix, offsets, [acceleration, velocity]);
             // The next stage's predictor overwrites the solver's.
             std::mem::swap(displacement, &mut self.solver.displacement);
+            of_stage.solve_unknowns(forces, at, &mut self.solver.acting.unknowns);
             if WEIGHTS[stage] != 0.0 {
-                self.powers[stage] =
-                    ledger.power(velocity, displacement, &self.solver.contact, forces, stage_time);
+                let Stage { displacement, velocity, .. } = of_stage;
+                self.powers[stage] = ledger.power(velocity, displacement, &self.solver.acting, forces);
             }
         }
         self.local_error = self.displacement_error(h, state);
     }
 
     /// Takes the attempted step of `level` into `state` and the books.
-    pub(super) fn accept(
-        &mut self,
-        level: u32,
-        state: &mut State<D>,
-        Books { ledger, errors }: Books<'_, D>,
-    ) {
+    fn accept(&mut self, level: u32, state: &mut State<D>, Books { ledger, errors }: Books<'_, D>) {
         let h = self.levels[level as usize].0;
         self.powers[0] = state.stage_power;
         for (weight, power) in WEIGHTS.iter().zip(&self.powers).filter(|(weight, _)| **weight != 0.0) {
@@ -163,30 +221,43 @@ impl<const D: usize> Esdirk<D> {
         ]);
         errors.add(self.local_error);
         // What the state held before is overwritten in the next step.
-        let Stage { displacement, velocity, acceleration } = &mut self.stages[STAGES - 2];
+        let Stage { displacement, velocity, acceleration, unknowns, unknown_rates } =
+            &mut self.stages[STAGES - 2];
         std::mem::swap(&mut state.displacement, displacement);
         std::mem::swap(&mut state.velocity, velocity);
         std::mem::swap(&mut state.acceleration, acceleration);
+        std::mem::swap(&mut state.points.unknowns, unknowns);
+        std::mem::swap(&mut state.points.rates, unknown_rates);
     }
 
     /// Errors that the attempted step of `level` from `state` leaves.
-    pub(super) fn error(&self, level: u32, forces: &Forces<D>, state: &State<D>) -> StepError {
+    fn error(&self, level: u32, forces: &Forces<D>, time: f64, state: &State<D>) -> StepError {
         let h = self.levels[level as usize].0;
         let end = &self.stages[STAGES - 2];
         let values = 2.0 * end.displacement.nodes() as f64;
         let velocity_error = self.velocity_error(h, state);
         let mut friction = Four::splat(0.0);
-        for (group, _) in self.solver.contact.touching() {
+        let (wall, contact) = (&forces.wall, &self.solver.acting.wall);
+        for (group, _) in contact.touching() {
             let (x, v) = (&end.displacement.groups()[group], &end.velocity.groups()[group]);
             let error = std::array::from_fn(|dof| velocity_error(group, dof));
-            friction = forces.friction_change(group, x, v, &error).max(friction);
+            friction = wall.friction_change(group, x, v, &error).max(friction);
         }
-        let contact = &self.solver.contact;
         let (x, v) = (&end.displacement, &end.velocity);
-        friction = forces.largest_friction_change_along(contact, x, v, &velocity_error).max(friction);
+        friction = wall.largest_friction_change_along(contact, x, v, &velocity_error).max(friction);
+        let mut friction = friction.to_array().into_iter().fold(0.0, f64::max);
+        if forces.points.follow_motion() {
+            let displacement_error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
+            friction = friction.max(forces.largest_sensitivity(
+                (time + h, &state.points),
+                [x, v],
+                displacement_error,
+                velocity_error,
+            ));
+        }
         StepError {
             displacement: ((self.local_error + 2.0 * self.surface_error(h, forces, state)) / values).sqrt(),
-            friction: friction.to_array().into_iter().fold(0.0, f64::max),
+            friction,
             sweep: self.solver.change(),
         }
     }
@@ -206,9 +277,9 @@ impl<const D: usize> Esdirk<D> {
 
     /// Sum of the squares of the local errors of the surface's displacement by the twist \[m2\], at the radius that would touch the wall.
     fn surface_error(&self, h: f64, forces: &Forces<D>, state: &State<D>) -> f64 {
-        let Some(twist) = forces.twist() else { return 0.0 };
+        let Some(twist) = forces.wall.twist() else { return 0.0 };
         let error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
-        let squares = forces.contact_radii().enumerate().map(|(group, radius)| {
+        let squares = forces.wall.contact_radii().enumerate().map(|(group, radius)| {
             let error = error(group, twist) * radius;
             error * error
         });
@@ -235,10 +306,17 @@ impl<const D: usize> Esdirk<D> {
         }
     }
 
-    /// Displacements, velocities and accelerations at the start of the step that was accepted last.
-    pub(super) fn start(&self) -> [&NodalField<D>; 3] {
-        let Stage { displacement, velocity, acceleration } = &self.stages[STAGES - 2];
-        [displacement, velocity, acceleration]
+    /// Unknowns of a stage without the share of its own rates, and the start of their solution.
+    fn predict_unknowns(&mut self, h: f64, stage: usize, state: &State<D>) {
+        for (place, base) in self.unknown_base.iter_mut().enumerate() {
+            let rate = |j: usize| match j {
+                0 => state.points.rates[place],
+                _ => self.stages[j - 1].unknown_rates[place],
+            };
+            let before = (0..stage).map(|j| STRICTLY_LOWER[stage][j] * rate(j)).sum::<f64>();
+            *base = h.mul_add(before, state.points.unknowns[place]);
+            self.solver.acting.unknowns[place] = (DIAGONAL * h).mul_add(rate(stage - 1), *base);
+        }
     }
 
     /// Offsets of a stage from those before it, and what its solution starts from.
@@ -291,6 +369,22 @@ impl<const D: usize> Esdirk<D> {
                 x[i][dof] = diagonal.mul_add(v[i][dof], x_base);
             }
         }
+    }
+}
+
+impl<const D: usize> Stage<D> {
+    /// Solves for the unknowns of the stage, whose motion is known, from those that forces were found with.
+    fn solve_unknowns(&mut self, forces: &Forces<D>, at: StageAt<'_>, unknowns: &mut [f64]) {
+        if unknowns.is_empty() {
+            return;
+        }
+        let motion = forces.motion_of(&self.displacement, &self.velocity);
+        forces.points.solve_unknowns(at.time, &motion, at.unknowns, (&mut *unknowns, at.state));
+        let UnknownStage { base, factor } = at.unknowns;
+        for ((rate, value), base) in self.unknown_rates.iter_mut().zip(&*unknowns).zip(base) {
+            *rate = (value - base) / factor;
+        }
+        self.unknowns.copy_from_slice(unknowns);
     }
 }
 

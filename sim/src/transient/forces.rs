@@ -1,512 +1,179 @@
-//! The right-hand side of the equations of motion: constant loads, unbalance, contact.
+//! The right-hand side of the equations of motion: constant loads, the wall, other forces at nodes.
 
-use super::segments::{LawAlong, SegmentForces, Segments};
-use crate::contact::{
-    ContactForce, ContactNode, ContactParameters, ContactSegment, LateralMotion, SegmentCompliance,
-    SegmentForce, SegmentMotion, Surface, Yielding, dynamic_contact, dynamic_segment, implicit_contact,
-    implicit_segment,
-};
-use crate::effect::unbalance::TurningForces;
-use crate::freedom::{Freedoms, U, V};
-use crate::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
+use super::implicit::held_list;
+use crate::force::wall::{Compliance, ContactForces, WallForces};
+use crate::force::{NodeCompliance, NodeMotion, PointForces, PointState, UnknownStage};
+use crate::freedom::{DOFS, Freedoms};
+use crate::linalg::{Four, InverseBands, Lane, NodalField};
 use crate::model::Model;
 use crate::motion::DynamicSystem;
-
-/// Contact forces of one evaluation: at nodes, four side by side, and along elements.
-#[derive(Debug, Clone)]
-pub(super) struct ContactForces {
-    groups: Vec<GroupContact>,
-    pub(super) along: SegmentForces,
-    /// If the wall acts along elements, the motion of each node's surface, four side by side, and its share of the normal forces: known at the ends of
-    /// steps alone.
-    surfaces: Vec<NodeSurfaces>,
-}
-
-/// Motion of the surfaces of four nodes on a wall that acts along elements.
-#[derive(Debug, Clone, Copy)]
-struct NodeSurfaces {
-    /// Penetrations \[m\]; zero where a node is off the wall.
-    penetration: Four,
-    /// Sliding speeds \[m/s\].
-    sliding_speed: Four,
-    /// Shares of the normal forces along the adjoining elements \[N\].
-    normal_force: Four,
-}
-
-/// Action of the wall on four nodes; zero for one that does not touch.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct GroupContact {
-    /// Penetrations \[m\] if any node touches.
-    penetration: Option<Four>,
-    /// Normal and friction force along u and v \[N\].
-    pub(super) force: [Four; 2],
-    /// Friction torque about the string \[N m\].
-    pub(super) torque: Four,
-    /// Signed size of the normal force \[N\]; positive pushes inwards.
-    pub(super) normal_force: Four,
-    /// Friction mu |F_n| \[N\], of the sign of the sliding speed.
-    friction: Four,
-    /// Sliding speed \[m/s\].
-    sliding_speed: Four,
-    /// Distance from the axis where a node touches, 1 elsewhere \[m\].
-    pub(super) radius: Four,
-}
-
-/// Action of the wall on one node.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct NodeContact {
-    /// Signed size of the normal force \[N\]; positive pushes inwards.
-    pub(super) normal_force: f64,
-    /// Speed of the string's surface along the wall \[m/s\].
-    pub(super) sliding_speed: f64,
-    /// True while the node is in the wall.
-    pub(super) touching: bool,
-}
-
-/// How every node gives way to its own contact forces in a solve: four nodes side by side.
-#[derive(Debug, Clone)]
-pub(super) struct Compliance {
-    groups: Vec<GroupCompliance>,
-    along: Vec<SegmentCompliance<Four>>,
-}
-
-/// How four nodes give way to their own contact forces.
-#[derive(Debug, Clone, Copy)]
-struct GroupCompliance {
-    /// Lateral displacement by a lateral force \[m/N\].
-    lateral: Four,
-    /// Displacement of the surface by a friction force at it \[m/N\].
-    surface: Four,
-}
-
-/// Changes that the last sweep of a solve still made at nodes that touch.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct SweepChange {
-    /// Largest change of a lateral displacement \[m\].
-    pub(super) lateral: f64,
-    /// Largest change of a friction coefficient.
-    pub(super) friction: f64,
-}
-
-impl SweepChange {
-    /// Whether neither exceeds its bound; a change that is not a number does.
-    pub(super) fn is_within(&self, bound: &SweepChange) -> bool {
-        self.lateral <= bound.lateral && self.friction <= bound.friction
-    }
-
-    /// Takes in the change of another solve of the same step.
-    pub(super) fn merge(&mut self, other: SweepChange) {
-        self.lateral = self.lateral.max(other.lateral);
-        self.friction = self.friction.max(other.friction);
-    }
-}
-
-impl ContactForces {
-    /// No contact of a string.
-    pub(super) fn none<const D: usize>(forces: &Forces<D>) -> Self {
-        let groups = forces.sites.len();
-        let none =
-            NodeSurfaces { penetration: Four::ZERO, sliding_speed: Four::ZERO, normal_force: Four::ZERO };
-        Self {
-            groups: vec![GroupContact::none(); groups],
-            along: SegmentForces::none(&forces.segments),
-            surfaces: vec![none; if forces.segments.is_empty() { 0 } else { groups }],
-        }
-    }
-
-    /// The groups of which any node touches, with their numbers.
-    pub(super) fn touching(&self) -> impl Iterator<Item = (usize, &GroupContact)> {
-        self.groups.iter().enumerate().filter(|(_, group)| group.penetration.is_some())
-    }
-
-    /// Raises `peaks` to the normal forces where they are larger \[N\], four nodes side by side; `sums` is room for as many.
-    pub(super) fn add_to_peaks(&self, peaks: &mut [Four], sums: &mut [Four]) {
-        if self.surfaces.is_empty() {
-            for (group, contact) in self.touching() {
-                peaks[group] = contact.normal_force.max(peaks[group]);
-            }
-            return;
-        }
-        for (sum, contact) in sums.iter_mut().zip(&self.groups) {
-            *sum = contact.normal_force;
-        }
-        self.along.add_normal_forces(sums, |sum| sum);
-        for (peak, sum) in peaks.iter_mut().zip(sums) {
-            *peak = sum.max(*peak);
-        }
-    }
-
-    /// Takes over what the wall does elsewhere, but for the motion of the nodes' surfaces.
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        self.groups.copy_from_slice(&other.groups);
-        self.along.copy_from(&other.along);
-    }
-
-    /// Visits every node in turn with what the wall does to it.
-    #[inline(always)]
-    pub(super) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
-        for (index, group) in self.groups.iter().enumerate() {
-            let first = LANES * index;
-            let (penetration, sliding_speed, normal_force) = match self.surfaces.get(index) {
-                None => (group.penetration.unwrap_or(Four::ZERO), group.sliding_speed, group.normal_force),
-                Some(surfaces) => {
-                    (surfaces.penetration, surfaces.sliding_speed, group.normal_force + surfaces.normal_force)
-                }
-            };
-            let [penetration, sliding_speed, normal_force] =
-                [penetration, sliding_speed, normal_force].map(Four::to_array);
-            for lane in 0..LANES.min(nodes - first) {
-                let touching = penetration[lane] > 0.0;
-                let [normal_force, sliding_speed] = [normal_force, sliding_speed].map(|values| values[lane]);
-                visit(first + lane, NodeContact { normal_force, sliding_speed, touching });
-            }
-        }
-    }
-}
-
-impl GroupContact {
-    fn none() -> Self {
-        let zero = Four::splat(0.0);
-        GroupContact {
-            penetration: None,
-            force: [zero; 2],
-            torque: zero,
-            normal_force: zero,
-            friction: zero,
-            sliding_speed: zero,
-            radius: Four::splat(1.0),
-        }
-    }
-}
 
 /// Everything that pushes the string.
 #[derive(Debug, Clone)]
 pub(super) struct Forces<const D: usize> {
     pub(super) load: NodalField<D>,
-    pub(super) unbalance: TurningForces,
-    rotation_speed: f64,
-    parameters: ContactParameters<Four>,
-    /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
-    sites: Vec<ContactNode<Four>>,
-    /// Groups of which the wall pushes any node as a node: all, or those of gauges if it acts along elements.
-    pushed: Vec<bool>,
-    segments: Segments<D>,
+    pub(super) wall: WallForces<D>,
+    pub(super) points: PointForces<D>,
     freedoms: Freedoms<D>,
+    /// Held degrees of freedom as (node, degree of freedom).
+    held: Vec<(usize, usize)>,
+}
+
+/// Forces of one evaluation that depend on time or motion, with the unknowns that they were found with.
+#[derive(Debug, Clone)]
+pub(super) struct ActingForces {
+    pub(super) wall: ContactForces,
+    pub(super) points: Vec<[f64; DOFS]>,
+    pub(super) unknowns: Vec<f64>,
+}
+
+/// Motion that nodes make of their own forces in the solves of a stage matrix.
+#[derive(Debug, Clone)]
+pub(super) struct StageCompliance {
+    wall: Compliance,
+    points: Vec<NodeCompliance>,
+    /// Velocity per displacement \[1/s\].
+    speed: f64,
+}
+
+/// Time and state at which forces are evaluated, with the stage that their unknowns are solved in.
+#[derive(Clone, Copy)]
+pub(super) struct StageAt<'a> {
+    /// \[s\].
+    pub(super) time: f64,
+    /// Unknowns and memory at the step's start.
+    pub(super) state: &'a PointState,
+    pub(super) unknowns: UnknownStage<'a>,
+}
+
+impl ActingForces {
+    /// None on a string.
+    pub(super) fn none<const D: usize>(forces: &Forces<D>) -> Self {
+        Self {
+            wall: ContactForces::none(&forces.wall),
+            points: forces.points.none(),
+            unknowns: forces.points.start().unknowns,
+        }
+    }
+
+    /// Takes over the forces of another evaluation, but for the motion of the nodes' surfaces.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.wall.copy_from(&other.wall);
+        self.points.copy_from_slice(&other.points);
+        self.unknowns.copy_from_slice(&other.unknowns);
+    }
 }
 
 impl<const D: usize> Forces<D> {
     pub(super) fn new(model: &Model, system: &DynamicSystem<D>) -> Self {
-        let sites = model.wall.sites().chunks(LANES).map(|sites| {
-            let lanes = |value: fn(&ContactNode<f64>) -> f64, never: f64| {
-                let of_lane = |lane: usize| sites.get(lane)?.as_ref();
-                Four::new(std::array::from_fn(|lane| of_lane(lane).map_or(never, value)))
-            };
-            ContactNode {
-                clearance: lanes(|site| site.clearance, f64::INFINITY),
-                contact_radius: lanes(|site| site.contact_radius, 0.0),
-                stiffness_share: lanes(|site| site.stiffness_share, 0.0),
-                damping_share: lanes(|site| site.damping_share, 0.0),
-            }
-        });
-        let sites: Vec<_> = sites.collect();
-        let has_share = |site: &ContactNode<Four>| {
-            (site.stiffness_share.greater_than(Four::ZERO) | site.damping_share.greater_than(Four::ZERO))
-                .any()
-        };
+        let (freedoms, held) = (system.freedoms, &system.held);
         Self {
             load: NodalField::from_nodes(&system.load),
-            unbalance: TurningForces::new(&system.unbalance, system.rotation_speed),
-            rotation_speed: system.rotation_speed,
-            parameters: model.wall.law().in_lanes(),
-            pushed: sites.iter().map(|site| model.effects.contact && has_share(site)).collect(),
-            segments: Segments::new(model, system.freedoms, &system.held, system.rotation_speed),
-            sites,
-            freedoms: system.freedoms,
+            wall: WallForces::new(&model.wall, model.effects.contact, freedoms, held, system.rotation_speed),
+            points: PointForces::new(&model.forces, freedoms),
+            freedoms,
+            held: held_list(system),
         }
     }
 
-    /// The wall along the elements.
-    pub(super) fn segments(&self) -> &Segments<D> {
-        &self.segments
-    }
-
-    /// Index of the twist among the degrees of freedom; absent if it is not solved for.
-    pub(super) fn twist(&self) -> Option<usize> {
-        self.freedoms.twist()
-    }
-
-    /// Radii of the nodes' surfaces at the wall \[m\], four side by side; zero where a node cannot touch.
-    pub(super) fn contact_radii(&self) -> impl Iterator<Item = Four> {
-        self.sites.iter().map(|site| site.contact_radius)
-    }
-
-    /// Compliance of nodes and elements under their own contact forces, from blocks of a stage matrix' inverse.
-    pub(super) fn compliance(&self, bands: &InverseBands<D>) -> Compliance {
-        let inverse = &bands.diagonal;
-        let site = |(first, site): (usize, &ContactNode<Four>)| {
-            let of_lanes = |value: &dyn Fn(&Block<D>, f64) -> f64| {
-                Four::new(std::array::from_fn(|lane| {
-                    inverse
-                        .get(first + lane)
-                        .map_or(0.0, |block| value(block, site.contact_radius.lane(lane)))
-                }))
-            };
-            let lateral = |block: &Block<D>| 0.5 * (block[(U, U)] + block[(V, V)]);
-            let twist = |block: &Block<D>| self.freedoms.twist().map_or(0.0, |twist| block[(twist, twist)]);
-            GroupCompliance {
-                lateral: of_lanes(&|block, _| lateral(block)),
-                surface: of_lanes(&|block, radius| lateral(block) + radius * radius * twist(block)),
-            }
-        };
-        Compliance {
-            groups: (0..).step_by(LANES).zip(&self.sites).map(site).collect(),
-            along: self.segments.compliance(bands),
+    /// Compliance of nodes and elements under their own forces, from blocks of a stage matrix' inverse with `speed` \[1/s\] of the displacement.
+    pub(super) fn compliance(&self, bands: &InverseBands<D>, speed: f64) -> StageCompliance {
+        StageCompliance {
+            wall: self.wall.compliance(bands),
+            points: self.points.compliance(bands, speed),
+            speed,
         }
     }
 
-    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped
-    /// top node never touches. `rates` gives the rate of a degree of freedom of a group.
-    pub(super) fn contact_into(
+    /// Adds the forces that depend on time alone to the `external` ones.
+    #[inline]
+    pub(super) fn add_of_time(&self, time: f64, out: &mut ActingForces, external: &mut NodalField<D>) {
+        self.points.add_of_time(time, &mut out.points, external);
+    }
+
+    /// Forces of a motion into `out`, and in `all` their sum with the `external` ones. `rates` gives the rate of a degree of freedom of a group of
+    /// nodes. Held degrees of freedom keep what is external.
+    pub(super) fn add_of_motion(
         &self,
+        (time, state): (f64, &PointState),
         x: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
-        out: &mut ContactForces,
-        others: &NodalField<D>,
+        out: &mut ActingForces,
+        external: &NodalField<D>,
         all: &mut NodalField<D>,
     ) {
-        self.contact_by(self.law(), self.law_along(), x, rates, out, others, all);
+        self.wall.contact_into(x, &rates, &mut out.wall, external, all);
+        if self.points.follow_motion() {
+            let motion = |node: usize| self.motion(node, x, &rates);
+            let unknowns = (out.unknowns.as_slice(), state);
+            self.points.add_of_motion(time, &motion, unknowns, &mut out.points, all);
+        }
+        self.hold(external, all);
     }
 
-    /// Computes the action of the wall on the nodes of a motion, by the law alone.
-    pub(super) fn contact_at(&self, x: &NodalField<D>, v: &NodalField<D>, out: &mut ContactForces) {
-        let (law, law_along) = (self.law(), self.law_along());
-        let rates = |group: usize, dof: usize| v.groups()[group][dof];
-        let pushed = x.groups().iter().zip(&mut out.groups).enumerate();
-        for (group, (x, out)) in pushed.filter(|&(group, _)| self.pushed[group]) {
-            self.push(group, &law, x, &rates, out, &mut [Four::splat(0.0); D]);
-        }
-        if self.segments.is_empty() {
-            return;
-        }
-        self.segments.evaluate(&law_along, x, &rates, &mut out.along);
-        let twist = self.freedoms.twist();
-        for (group, ((x, site), surfaces)) in
-            x.groups().iter().zip(&self.sites).zip(&mut out.surfaces).enumerate()
-        {
-            let motion = lateral_motion(x, |dof| rates(group, dof), twist);
-            let surface = Surface::of(site, &motion, Four::splat(self.rotation_speed));
-            let touching = |value| Four::select(surface.touches, value, Four::ZERO);
-            *surfaces = NodeSurfaces {
-                penetration: touching(surface.penetration),
-                sliding_speed: touching(surface.sliding_speed),
-                normal_force: Four::ZERO,
-            };
-        }
-        out.along.add_normal_forces(&mut out.surfaces, |surfaces| &mut surfaces.normal_force);
-    }
-
-    /// The law at nodes.
+    /// The same with forces that agree with the motion that they make: on entry `out` holds those that the motion was found with.
     #[inline(always)]
-    fn law(&self) -> impl Fn(usize, &LateralMotion<Four>, &GroupContact) -> ContactForce<Four> {
-        |group, motion, _| {
-            dynamic_contact(&self.parameters, &self.sites[group], motion, Four::splat(self.rotation_speed))
-        }
-    }
-
-    /// The law along elements.
-    #[inline(always)]
-    fn law_along(&self) -> impl LawAlong {
-        |segment: &ContactSegment<Four>,
-         _: usize,
-         motion: &SegmentMotion<Four>,
-         force: &mut SegmentForce<Four>| {
-            dynamic_segment(&self.parameters, segment, motion, Four::splat(self.rotation_speed), force)
-        }
-    }
-
-    /// The same as [implicit](implicit_contact) forces, where `out` holds those that the motion was found with and the nodes give way
-    /// with `compliance`, at `speed` \[1/s\] of the displacement.
-    pub(super) fn implicit_contact_into(
+    pub(super) fn add_implicit(
         &self,
-        (compliance, speed): (&Compliance, f64),
+        compliance: &StageCompliance,
+        at: StageAt<'_>,
         x: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
-        out: &mut ContactForces,
-        others: &NodalField<D>,
-        all: &mut NodalField<D>,
+        out: &mut ActingForces,
+        (external, all): (&NodalField<D>, &mut NodalField<D>),
     ) {
-        let law = |group: usize, motion: &LateralMotion<Four>, before: &GroupContact| {
-            let GroupCompliance { lateral, surface } = compliance.groups[group];
-            let yielding = Yielding {
-                lateral,
-                surface,
-                speed: Four::splat(speed),
-                force: before.force,
-                normal: before.normal_force,
-                friction: before.friction,
-            };
-            let rotation_speed = Four::splat(self.rotation_speed);
-            implicit_contact(&self.parameters, &self.sites[group], motion, rotation_speed, &yielding)
-        };
-        let along = |segment: &ContactSegment<Four>,
-                     group: usize,
-                     motion: &SegmentMotion<Four>,
-                     force: &mut SegmentForce<Four>| {
-            let yielding = (&compliance.along[group], Four::splat(speed));
-            let rotation_speed = Four::splat(self.rotation_speed);
-            implicit_segment(&self.parameters, segment, motion, rotation_speed, yielding, force)
-        };
-        self.contact_by(law, along, x, rates, out, others, all);
-    }
-
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "two laws, a motion, and where the forces go")]
-    fn contact_by(
-        &self,
-        law: impl Fn(usize, &LateralMotion<Four>, &GroupContact) -> ContactForce<Four>,
-        law_along: impl LawAlong,
-        x: &NodalField<D>,
-        rates: impl Fn(usize, usize) -> Four,
-        out: &mut ContactForces,
-        others: &NodalField<D>,
-        all: &mut NodalField<D>,
-    ) {
-        let n = self.sites.len();
-        {
-            let (x, others, out) = (&x.groups()[..n], &others.groups()[..n], &mut out.groups[..n]);
-            let (all, pushed) = (&mut all.groups_mut()[..n], &self.pushed[..n]);
-            for group in 0..n {
-                let mut forces = others[group];
-                if pushed[group] {
-                    self.push(group, &law, &x[group], &rates, &mut out[group], &mut forces);
-                }
-                all[group] = forces;
-            }
+        let wall = (&compliance.wall, compliance.speed);
+        self.wall.implicit_contact_into(wall, x, &rates, &mut out.wall, external, all);
+        if self.points.follow_motion() {
+            let motion = |node: usize| self.motion(node, x, &rates);
+            let unknowns = (out.unknowns.as_mut_slice(), at.state);
+            let (compliance, points) = (&compliance.points, &mut out.points);
+            self.points.add_implicit(at.time, &motion, compliance, at.unknowns, unknowns, points, all);
         }
-        if !self.segments.is_empty() {
-            self.segments.add_forces(&law_along, x, &rates, &mut out.along, (others, all));
-        }
+        self.hold(external, all);
     }
 
-    /// Effect at touching nodes of the changes of the motion between two sweeps of a solve: `x` less `before` in displacements, times
-    /// `speed` \[1/s\] in velocities.
-    pub(super) fn sweep_change(
-        &self,
-        contact: &ContactForces,
-        x: &NodalField<D>,
-        before: &NodalField<D>,
-        rates: impl Fn(usize, usize) -> Four,
-        speed: f64,
-    ) -> SweepChange {
-        let mut most = [Four::splat(0.0); 2];
-        for (group, _) in contact.touching() {
-            let (x, before) = (&x.groups()[group], &before.groups()[group]);
-            let change: [Four; D] = std::array::from_fn(|dof| x[dof] - before[dof]);
-            let lateral = change[U].abs().max(change[V].abs());
-            most[0] = lateral.max(most[0]);
-            let faster = change.map(|change| change * Four::splat(speed));
-            let rates = std::array::from_fn(|dof| rates(group, dof));
-            most[1] = self.friction_change(group, x, &rates, &faster).max(most[1]);
-        }
-        let [lateral, friction] = most.map(|most| most.to_array().into_iter().fold(0.0, f64::max));
-        let mut change = SweepChange { lateral, friction };
-        let along = &contact.along;
-        change.merge(self.segments.sweep_change(&self.parameters, along, x, before, &rates, speed));
-        change
+    /// Motion of a node by displacements and velocities.
+    pub(super) fn motion_of<'a>(
+        &'a self,
+        x: &'a NodalField<D>,
+        v: &'a NodalField<D>,
+    ) -> impl Fn(usize) -> NodeMotion + 'a {
+        |node| self.motion(node, x, |group, dof| v.groups()[group][dof])
     }
 
-    /// The largest change of a friction coefficient along elements in contact for a change of velocities, four elements side by side.
-    pub(super) fn largest_friction_change_along(
+    /// Largest change of a coefficient of a law at nodes by errors of displacements and velocities, by group and degree of freedom.
+    pub(super) fn largest_sensitivity(
         &self,
-        contact: &ContactForces,
-        x: &NodalField<D>,
-        v: &NodalField<D>,
-        change: &impl Fn(usize, usize) -> Four,
-    ) -> Four {
-        let rates = |group: usize, dof: usize| v.groups()[group][dof];
-        contact.along.touching().fold(Four::ZERO, |most, touching| {
-            self.segments.friction_change(&self.parameters, touching, x, &rates, change).max(most)
-        })
-    }
-
-    /// By how much friction coefficients change for a change of velocities, four nodes side by side: by the slope of the friction curve
-    /// at their sliding speed.
-    #[inline(always)]
-    pub(super) fn friction_change(
-        &self,
-        group: usize,
-        x: &[Four; D],
-        v: &[Four; D],
-        change: &[Four; D],
-    ) -> Four {
-        let (site, zero) = (&self.sites[group], Four::splat(0.0));
-        let (along_u, along_v) = (x[U], x[V]);
-        let radius_squared = along_u.mul_add(along_u, along_v * along_v);
-        let touches = radius_squared.greater_than(site.clearance * site.clearance);
-        let per_radius = Four::splat(1.0) / Four::select(touches, radius_squared, Four::splat(1.0)).sqrt();
-        let surface_speed = |rates: &[Four; D], rotation_speed: Four| {
-            let twist = self.freedoms.twist().map_or(rotation_speed, |twist| rotation_speed + rates[twist]);
-            twist.mul_add(site.contact_radius, (along_u * rates[V] - along_v * rates[U]) * per_radius)
+        (time, state): (f64, &PointState),
+        [x, v]: [&NodalField<D>; 2],
+        displacement_error: impl Fn(usize, usize) -> Four,
+        velocity_error: impl Fn(usize, usize) -> Four,
+    ) -> f64 {
+        let error = |node: usize| {
+            let (group, lane) = (node / Four::LANES, node % Four::LANES);
+            let displacement = std::array::from_fn(|dof| displacement_error(group, dof).lane(lane));
+            let velocity = std::array::from_fn(|dof| velocity_error(group, dof).lane(lane));
+            let [displacement, velocity] =
+                [displacement, velocity].map(|values| self.freedoms.among(&values, [0.0; DOFS]));
+            NodeMotion { displacement, velocity }
         };
-        let slope = self.parameters.friction_slope(surface_speed(v, Four::splat(self.rotation_speed)));
-        Four::select(touches, (slope * surface_speed(change, zero)).abs(), zero)
+        self.points.sensitivity(time, &self.motion_of(x, v), state, &error)
     }
 
-    /// Computes the action of the wall on four nodes by a law, and in `forces` what it adds to the others.
-    #[inline(always)]
-    fn push(
-        &self,
-        group: usize,
-        law: &impl Fn(usize, &LateralMotion<Four>, &GroupContact) -> ContactForce<Four>,
-        x: &[Four; D],
-        rates: &impl Fn(usize, usize) -> Four,
-        out: &mut GroupContact,
-        forces: &mut [Four; D],
-    ) {
-        let (site, u, v) = (&self.sites[group], x[U], x[V]);
-        let radius_squared = u.mul_add(u, v * v);
-        // Most groups are far from the wall: their rates are not even looked at.
-        if !radius_squared.greater_than(site.clearance * site.clearance).any() {
-            if out.penetration.is_some() {
-                *out = GroupContact::none();
-            }
-            return;
-        }
-        let motion = lateral_motion(x, |dof| rates(group, dof), self.freedoms.twist());
-        let contact = law(group, &motion, out);
-        let touches = contact.penetration.greater_than(Four::splat(0.0));
-        let radius = Four::select(touches, site.clearance + contact.penetration, Four::splat(1.0));
-        *out = GroupContact {
-            penetration: touches.any().then_some(contact.penetration),
-            force: [contact.force_u, contact.force_v],
-            torque: contact.torque_z,
-            normal_force: contact.normal,
-            friction: contact.friction,
-            sliding_speed: contact.sliding_speed,
-            radius,
-        };
-        forces[U] = forces[U] + contact.force_u;
-        forces[V] = forces[V] + contact.force_v;
-        if let Some(twist) = self.freedoms.twist() {
-            forces[twist] = forces[twist] + contact.torque_z;
+    fn motion(&self, node: usize, x: &NodalField<D>, rates: impl Fn(usize, usize) -> Four) -> NodeMotion {
+        let (group, lane) = (node / Four::LANES, node % Four::LANES);
+        let velocity = std::array::from_fn(|dof| rates(group, dof).lane(lane));
+        let [displacement, velocity] =
+            [x.node(node), velocity].map(|values| self.freedoms.among(&values, [0.0; DOFS]));
+        NodeMotion { displacement, velocity }
+    }
+
+    /// Takes back what forces add at held degrees of freedom.
+    #[inline]
+    fn hold(&self, external: &NodalField<D>, all: &mut NodalField<D>) {
+        for &place in &self.held {
+            all[place] = external[place];
         }
     }
 }
-
-/// Motion of four nodes as contact asks for it, from their displacements and the rate of each degree of freedom.
-#[inline(always)]
-fn lateral_motion<const D: usize>(
-    x: &[Four; D],
-    rates: impl Fn(usize) -> Four,
-    twist: Option<usize>,
-) -> LateralMotion<Four> {
-    LateralMotion {
-        u: x[U],
-        v: x[V],
-        u_rate: rates(U),
-        v_rate: rates(V),
-        theta_z_rate: twist.map_or(Four::ZERO, rates),
-    }
-}
-
-const LANES: usize = Four::LANES;

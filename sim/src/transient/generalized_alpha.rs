@@ -1,8 +1,10 @@
 //! The generalized-alpha method of Chung and Hulbert (1993), second order.
 
-use super::forces::{ContactForces, Forces};
+use super::forces::{ActingForces, Forces, StageAt};
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
-use super::run::{Books, State};
+use super::method::{Method, StepAhead, StepCollapsed, StepMade};
+use super::state::{Books, State};
+use crate::force::UnknownStage;
 use crate::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::motion::DynamicSystem;
 
@@ -23,6 +25,21 @@ fn parameters(spectral_radius: f64) -> (f64, f64, f64, f64) {
     (alpha_m, alpha_f, beta, 0.5 - alpha_m + alpha_f)
 }
 
+/// Parameters of the method for unknowns of first order (Jansen, Whiting and Hulbert 2000, equations 13 to 18), from the same spectral radius.
+struct UnknownParameters {
+    alpha_m: f64,
+    alpha_f: f64,
+    gamma: f64,
+}
+
+impl UnknownParameters {
+    fn new(spectral_radius: f64) -> Self {
+        let alpha_m = 0.5 * (3.0 - spectral_radius) / (1.0 + spectral_radius);
+        let alpha_f = 1.0 / (1.0 + spectral_radius);
+        Self { alpha_m, alpha_f, gamma: 0.5 + alpha_m - alpha_f }
+    }
+}
+
 /// Of the level at which a step \[s\] balances.
 pub(super) fn stage_coefficients(step: f64, spectral_radius: f64) -> StageCoefficients {
     let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
@@ -38,11 +55,39 @@ pub(super) struct GeneralizedAlpha<const D: usize> {
     step: f64,
     spectral_radius: f64,
     matrix: StageMatrix<D>,
-    pub(super) solver: StageSolver<D>,
+    solver: StageSolver<D>,
     acceleration_offset: NodalField<D>,
     velocity_offset: NodalField<D>,
     mean_velocity: NodalField<D>,
     next_displacement: NodalField<D>,
+    /// Unknowns at the step's level without the share of their rates there.
+    unknown_base: Vec<f64>,
+}
+
+impl<const D: usize> Method<D> for GeneralizedAlpha<D> {
+    fn advance(
+        &mut self,
+        forces: &Forces<D>,
+        StepAhead { time, level, .. }: StepAhead<'_>,
+        state: &mut State<D>,
+        acting: &ActingForces,
+        books: Books<'_, D>,
+    ) -> Result<StepMade, StepCollapsed> {
+        self.step(forces, time, state, acting, books);
+        Ok(StepMade {
+            level,
+            next_level: None,
+            steps: 1,
+            step_range: [self.step; 2],
+            rejected: 0,
+            unresolved: 0,
+            monitor: std::mem::take(&mut self.solver.monitor),
+        })
+    }
+
+    fn peaks(&self) -> &[Four] {
+        self.solver.peaks()
+    }
 }
 
 impl<const D: usize> GeneralizedAlpha<D> {
@@ -65,25 +110,28 @@ impl<const D: usize> GeneralizedAlpha<D> {
             velocity_offset: zero.clone(),
             mean_velocity: zero.clone(),
             next_displacement: zero,
+            unknown_base: forces.points.start().unknowns,
         })
     }
 
-    /// Advances `state` by one step from `time`, where the wall pushes with `contact`.
-    pub(super) fn advance(
+    /// Advances `state`, whose forces are `acting`, by one step from `time`.
+    fn step(
         &mut self,
         forces: &Forces<D>,
         time: f64,
         state: &mut State<D>,
-        contact: &ContactForces,
+        acting: &ActingForces,
         Books { ledger, errors }: Books<'_, D>,
     ) {
         let (_, alpha_f, beta, _) = parameters(self.spectral_radius);
         let h = self.step;
         self.predict(state);
+        let factor = self.predict_unknowns(state);
         let solver = &mut self.solver;
-        solver.begin_step(contact);
-        let level_time = time + (1.0 - alpha_f) * h;
-        solver.solve(&self.matrix, forces, level_time, [&self.acceleration_offset, &self.velocity_offset]);
+        solver.begin_step(acting);
+        let unknowns = UnknownStage { base: &self.unknown_base, factor };
+        let at = StageAt { time: time + (1.0 - alpha_f) * h, state: &state.points, unknowns };
+        solver.solve(&self.matrix, forces, at, [&self.acceleration_offset, &self.velocity_offset]);
         step_end(
             &EndCoefficients::new(h, self.spectral_radius),
             state,
@@ -103,14 +151,35 @@ impl<const D: usize> GeneralizedAlpha<D> {
         let factor = Four::splat(h * h * (beta - 1.0 / 6.0));
         let (before, after) = (before.groups(), after.groups());
         errors.add_groups(before.len(), |group, dof| factor * (after[group][dof] - before[group][dof]));
-        ledger.book(
-            h,
-            &mut self.mean_velocity,
-            &mut solver.displacement,
-            &solver.contact,
-            forces,
-            level_time,
-        );
+        ledger.book(h, &mut self.mean_velocity, &mut solver.displacement, &solver.acting, forces);
+        self.advance_unknowns(state);
+    }
+
+    /// Base of the unknowns at the step's level, and the factor of their rates there \[s\]: the method of Jansen, Whiting and Hulbert (2000) for equations of
+    /// first order, whose level is the same.
+    fn predict_unknowns(&mut self, state: &State<D>) -> f64 {
+        let (h, unknowns) = (self.step, UnknownParameters::new(self.spectral_radius));
+        let per_level = unknowns.alpha_f * h;
+        let share = unknowns.gamma / unknowns.alpha_m;
+        for ((base, value), rate) in
+            self.unknown_base.iter_mut().zip(&state.points.unknowns).zip(&state.points.rates)
+        {
+            *base = (per_level * (1.0 - share)).mul_add(*rate, *value);
+        }
+        per_level * share
+    }
+
+    /// Unknowns and their rates at the step's end, from those at its level.
+    fn advance_unknowns(&self, state: &mut State<D>) {
+        let (h, UnknownParameters { alpha_f, gamma, .. }) =
+            (self.step, UnknownParameters::new(self.spectral_radius));
+        let points = &mut state.points;
+        let at_level = &self.solver.acting.unknowns;
+        for ((value, rate), level) in points.unknowns.iter_mut().zip(&mut points.rates).zip(at_level) {
+            let change = (level - *value) / alpha_f;
+            *rate += (change / h - *rate) / gamma;
+            *value += change;
+        }
     }
 
     /// Offsets of the step's level, and what its solution starts from.

@@ -8,7 +8,8 @@
 //! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is held in the first sweep; what sweeps still
 //! have to converge to is what nodes do to each other.
 
-use super::forces::{Compliance, ContactForces, Forces, SweepChange};
+use super::forces::{ActingForces, Forces, StageAt, StageCompliance};
+use crate::force::wall::SweepChange;
 use crate::freedom::LATERAL;
 use crate::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric};
 use crate::model::NodalVector;
@@ -30,7 +31,7 @@ pub(super) struct StageMatrix<const D: usize> {
     /// Entries of the right-hand side at the held degrees of freedom.
     held_values: Vec<f64>,
     /// How nodes give way to their own contact forces.
-    compliance: Compliance,
+    compliance: StageCompliance,
 }
 
 /// The vectors that the solve of a stage works in, and what all step lengths share.
@@ -49,8 +50,8 @@ pub(super) struct StageSolver<const D: usize> {
     pub(super) velocity: NodalField<D>,
     /// Displacements of the sweep before.
     previous: NodalField<D>,
-    /// Contact forces that went into the last sweep.
-    pub(super) contact: ContactForces,
+    /// Forces that went into the last sweep.
+    pub(super) acting: ActingForces,
     pub(super) monitor: SweepMonitor,
     /// Changes by the last sweeps of the solves of a step.
     change: SweepChange,
@@ -124,7 +125,7 @@ impl<const D: usize> StageMatrix<D> {
         Ok(Self {
             factor: Factor::new(&matrix)?,
             coefficients,
-            compliance: forces.compliance(&matrix.inverse_bands()?),
+            compliance: forces.compliance(&matrix.inverse_bands()?, coefficients.velocity),
             held_values: held
                 .map(|(node, dof)| initial[node][dof] * matrix.diagonal[node][(dof, dof)])
                 .collect(),
@@ -150,7 +151,7 @@ impl<const D: usize> StageSolver<D> {
             displacement: zero.clone(),
             velocity: zero.clone(),
             previous: zero,
-            contact: ContactForces::none(forces),
+            acting: ActingForces::none(forces),
             monitor: SweepMonitor::default(),
             change: SweepChange::default(),
             peaks: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
@@ -158,9 +159,9 @@ impl<const D: usize> StageSolver<D> {
         }
     }
 
-    /// Begins a step from where the wall pushes with `contact`.
-    pub(super) fn begin_step(&mut self, contact: &ContactForces) {
-        self.contact.copy_from(contact);
+    /// Begins a step from where forces are `acting`.
+    pub(super) fn begin_step(&mut self, acting: &ActingForces) {
+        self.acting.copy_from(acting);
         self.change = SweepChange::default();
         self.peaks.fill(Four::ZERO);
     }
@@ -175,13 +176,13 @@ impl<const D: usize> StageSolver<D> {
         &self.peaks
     }
 
-    /// Solves the stage at `time` from the predictor in `displacement` and `velocity`; `acceleration_offset` is
+    /// Solves the stage `at` a time from the predictor in `displacement` and `velocity`; `acceleration_offset` is
     /// a^ and `velocity_offset` is v^.
     pub(super) fn solve(
         &mut self,
         matrix: &StageMatrix<D>,
         forces: &Forces<D>,
-        time: f64,
+        at: StageAt<'_>,
         [acceleration_offset, velocity_offset]: [&NodalField<D>; 2],
     ) {
         self.mass_and_damping.subtract_products(
@@ -190,27 +191,25 @@ impl<const D: usize> StageSolver<D> {
             velocity_offset,
             &mut self.external,
         );
-        forces.unbalance.add(time, &mut self.external);
-        // The wall does not push the top node, which alone is held here.
+        forces.add_of_time(at.time, &mut self.acting, &mut self.external);
         for (&(node, dof), &value) in self.held.iter().zip(&matrix.held_values) {
             self.external[(node, dof)] = value;
         }
         let speed = matrix.coefficients.velocity;
-        let yielding = (&matrix.compliance, speed);
         let c = Four::splat(speed);
         let mut change = SweepChange::default();
         for sweep in 1..=self.sweeps {
             let x = &self.displacement;
             if sweep == 1 {
                 let rates = |group: usize, dof: usize| self.velocity.groups()[group][dof];
-                let (contact, right) = (&mut self.contact, &mut self.right);
-                forces.implicit_contact_into(yielding, x, rates, contact, &self.external, right);
+                let (acting, right) = (&mut self.acting, &mut self.right);
+                forces.add_implicit(&matrix.compliance, at, x, rates, acting, (&self.external, right));
             } else {
                 // Few nodes touch: only their velocities are formed between the sweeps.
                 let (moved, offset) = (x.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
-                let (contact, right) = (&mut self.contact, &mut self.right);
-                forces.implicit_contact_into(yielding, x, rates, contact, &self.external, right);
+                let (acting, right) = (&mut self.acting, &mut self.right);
+                forces.add_implicit(&matrix.compliance, at, x, rates, acting, (&self.external, right));
             }
             std::mem::swap(&mut self.displacement, &mut self.previous);
             matrix.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
@@ -219,14 +218,20 @@ impl<const D: usize> StageSolver<D> {
             if sweep >= 2 && (self.sweeps > 2 || sweep == self.sweeps) {
                 let (moved, offset) = (self.displacement.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
-                change = forces.sweep_change(&self.contact, &self.displacement, &self.previous, rates, speed);
+                change = forces.wall.sweep_change(
+                    &self.acting.wall,
+                    &self.displacement,
+                    &self.previous,
+                    rates,
+                    speed,
+                );
                 if change.is_within(&CONVERGED) {
                     break;
                 }
             }
         }
         self.change.merge(change);
-        self.contact.add_to_peaks(&mut self.peaks, &mut self.normal_forces);
+        self.acting.wall.add_to_peaks(&mut self.peaks, &mut self.normal_forces);
         self.monitor.largest_change = self.monitor.largest_change.max(change.lateral);
         self.monitor.loose_solves += u64::from(!change.is_within(&LOOSE));
     }

@@ -19,12 +19,16 @@ mod generalized_alpha;
 mod grid;
 mod histories;
 mod implicit;
+mod method;
+mod nodal;
 mod rk4;
 mod run;
-mod segments;
 mod settle;
 mod snapshots;
 mod stability;
+mod state;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use adaptive::SMALLEST_MOTION;
 pub use checkpoint::{Checkpoint, CheckpointError};

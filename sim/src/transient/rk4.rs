@@ -4,10 +4,11 @@
 
 use super::energy::Ledger;
 use super::error::ErrorSum;
-use super::forces::{ContactForces, Forces};
+use super::forces::{ActingForces, Forces};
 use super::grid::parts;
-use super::implicit::{held_list, largest_change, multiply_add};
-use super::run::{Books, State};
+use super::implicit::{SweepMonitor, held_list, largest_change, multiply_add};
+use super::method::{Method, StepAhead, StepCollapsed, StepMade};
+use super::state::{Books, State};
 use crate::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
 use crate::model::NodalVector;
 use crate::motion::DynamicSystem;
@@ -52,11 +53,13 @@ pub(super) struct Rk4<const D: usize> {
     external: NodalField<D>,
     right: NodalField<D>,
     between: NodalVector<D>,
-    contact: ContactForces,
-    pub(super) rejected: u64,
-    pub(super) steps: u64,
+    acting: ActingForces,
+    /// Rates of the unknowns at the stages \[1/s\].
+    unknown_rates: [Vec<f64>; 4],
+    rejected: u64,
+    steps: u64,
     /// The shortest and the longest step made \[s\].
-    pub(super) step_range: [f64; 2],
+    step_range: [f64; 2],
 }
 
 /// Step doubling.
@@ -71,9 +74,27 @@ struct Adaptive<const D: usize> {
     fine: State<D>,
 }
 
-/// A step of the adaptive method became too short.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct StepCollapsed;
+impl<const D: usize> Method<D> for Rk4<D> {
+    fn advance(
+        &mut self,
+        forces: &Forces<D>,
+        StepAhead { time, level, grid, .. }: StepAhead<'_>,
+        state: &mut State<D>,
+        _: &ActingForces,
+        books: Books<'_, D>,
+    ) -> Result<StepMade, StepCollapsed> {
+        self.advance_by(forces, time, grid.step(level), state, books)?;
+        Ok(StepMade {
+            level,
+            next_level: None,
+            steps: std::mem::take(&mut self.steps),
+            step_range: self.step_range,
+            rejected: std::mem::take(&mut self.rejected),
+            unresolved: 0,
+            monitor: SweepMonitor::default(),
+        })
+    }
+}
 
 impl<const D: usize> Rk4<D> {
     pub(super) fn new(
@@ -85,7 +106,7 @@ impl<const D: usize> Rk4<D> {
     ) -> Result<Self, SingularBlock> {
         let n = system.load.len();
         let zero = NodalField::zeros(n);
-        let state = State::at_rest(&zero, largest_step);
+        let state = State::at_rest(&zero, forces.points.start(), largest_step);
         Ok(Self {
             mass: mass_factor(system)?,
             damping_and_stiffness: MatrixPair::new(&system.damping, &system.stiffness),
@@ -102,7 +123,8 @@ impl<const D: usize> Rk4<D> {
             external: zero,
             right: NodalField::zeros(n),
             between: vec![[0.0; D]; n],
-            contact: ContactForces::none(forces),
+            unknown_rates: std::array::from_fn(|_| forces.points.start().rates),
+            acting: ActingForces::none(forces),
             rejected: 0,
             steps: 0,
             step_range: [f64::INFINITY, 0.0],
@@ -110,7 +132,7 @@ impl<const D: usize> Rk4<D> {
     }
 
     /// Advances `state` from `time` over `interval` seconds.
-    pub(super) fn advance(
+    fn advance_by(
         &mut self,
         forces: &Forces<D>,
         time: f64,
@@ -212,22 +234,35 @@ impl<const D: usize> Rk4<D> {
             }
             let stage_time = time + c;
             self.damping_and_stiffness.subtract_products(&forces.load, v, x, &mut self.external);
-            forces.unbalance.add(stage_time, &mut self.external);
+            forces.add_of_time(stage_time, &mut self.acting, &mut self.external);
             for &(node, dof) in &self.held {
                 self.external[(node, dof)] = 0.0;
             }
+            for (place, value) in self.acting.unknowns.iter_mut().enumerate() {
+                let rate = if stage == 0 { 0.0 } else { self.unknown_rates[stage - 1][place] };
+                *value = c.mul_add(rate, state.points.unknowns[place]);
+            }
             let rates = |group: usize, dof: usize| v.groups()[group][dof];
-            forces.contact_into(x, rates, &mut self.contact, &self.external, &mut self.right);
+            let at = (stage_time, &state.points);
+            forces.add_of_motion(at, x, rates, &mut self.acting, &self.external, &mut self.right);
+            if !self.acting.unknowns.is_empty() {
+                let motion = forces.motion_of(x, v);
+                let unknowns = (self.acting.unknowns.as_slice(), &state.points);
+                forces.points.rates(stage_time, &motion, unknowns, &mut self.unknown_rates[stage]);
+            }
             self.mass.solve_field(&self.right, &mut self.between, &mut self.rates[stage].1);
             self.rates[stage].0.copy_from(v);
             if let Some(ledger) = &mut ledger {
-                ledger.book(WEIGHTS[stage] * h, v, x, &self.contact, forces, stage_time);
+                ledger.book(WEIGHTS[stage] * h, v, x, &self.acting, forces);
             }
         }
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {
             let (rate_x, rate_v) = &self.rates[stage];
             axpy(&mut state.displacement, weight * h, rate_x);
             axpy(&mut state.velocity, weight * h, rate_v);
+            for (value, rate) in state.points.unknowns.iter_mut().zip(&self.unknown_rates[stage]) {
+                *value = (weight * h).mul_add(*rate, *value);
+            }
         }
         self.steps += 1;
         self.step_range = [self.step_range[0].min(h), self.step_range[1].max(h)];

@@ -6,20 +6,22 @@ use drillsweep_scenario::{Integrator, Scenario, TimeWindow};
 use serde::{Deserialize, Serialize};
 
 use super::adaptive::{self, Tolerances};
-use super::checkpoint::{self, Checkpoint, CheckpointError};
+use super::checkpoint::{Checkpoint, CheckpointError};
 use super::contact_statistics::ContactStatistics;
 use super::energy::{EnergyRow, Ledger, Work};
 use super::error::ErrorSum;
 use super::esdirk::Esdirk;
 use super::failure::{DivergenceReason, TransientError};
-use super::forces::{ContactForces, Forces};
+use super::forces::{ActingForces, Forces};
 use super::generalized_alpha::{self, GeneralizedAlpha};
 use super::grid::Grid;
 use super::histories::{NodeHistory, Series};
 use super::implicit::SweepMonitor;
+use super::method::{Method, StepAhead, StepMade};
 use super::rk4::{self, Rk4};
 use super::settle::{Settle, Settling, course_samples, twin_time};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
+use super::state::{Books, State};
 use super::{Outcome, Records, TransientEffort, bit_beside, dense, recorded_nodes, resolved_hz, stability};
 use crate::control::Control;
 use crate::freedom::{DOFS, Freedoms, U, V};
@@ -66,10 +68,10 @@ pub(super) struct Run<'m, const D: usize> {
     rest: NodalVector,
     /// Those that are solved for.
     initial: NodalField<D>,
-    stepper: Stepper<D>,
+    method: Box<dyn Method<D>>,
     ledger: Ledger<D>,
-    /// Action of the wall at the present state.
-    contact: ContactForces,
+    /// Forces at the present state.
+    acting: ActingForces,
     /// Samples of a whole run.
     samples: u64,
     grid: Grid,
@@ -145,34 +147,6 @@ pub(super) struct Progress<const D: usize> {
     pub(super) twin_starts: Vec<(u64, Checkpoint)>,
 }
 
-/// Motion at a step's end, with what the methods carry from step to step.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct State<const D: usize> {
-    #[serde(with = "checkpoint::nodal")]
-    pub(super) displacement: NodalField<D>,
-    #[serde(with = "checkpoint::nodal")]
-    pub(super) velocity: NodalField<D>,
-    #[serde(with = "checkpoint::nodal")]
-    pub(super) acceleration: NodalField<D>,
-    /// Powers at the step's end (the first stage of the next ESDIRK step).
-    pub(super) stage_power: Work,
-    /// Step of the adaptive method \[s\].
-    pub(super) adaptive_step: f64,
-}
-
-/// Where a step's work and error are entered.
-pub(super) struct Books<'a, const D: usize> {
-    pub(super) ledger: &'a mut Ledger<D>,
-    pub(super) errors: &'a mut ErrorSum,
-}
-
-#[derive(Debug, Clone)]
-enum Stepper<const D: usize> {
-    GeneralizedAlpha(Box<GeneralizedAlpha<D>>),
-    Esdirk(Box<Esdirk<D>>),
-    Rk4(Box<Rk4<D>>),
-}
-
 impl<'m, const D: usize> Run<'m, D> {
     /// A run of the degrees of freedom `freedoms` of `system`, from a start, with adaptive steps of at most `resolving_step` \[s\].
     pub(super) fn new(
@@ -197,7 +171,8 @@ impl<'m, const D: usize> Run<'m, D> {
         let interval = 1.0 / scenario.recording.rate_hz;
         let samples = (scenario.duration * scenario.recording.rate_hz).round() as u64;
         let ledger_every = (scenario.recording.rate_hz / LEDGER_RATE_HZ).round().max(1.0) as u64;
-        let longest = (stepping.step / f64::from(subdivisions)).min(resolving_step);
+        let longest =
+            (stepping.step / f64::from(subdivisions)).min(resolving_step).min(forces.points.longest_step());
         let hole_radius = 0.5 * scenario.well.hole_diameter;
         let (longest, halvings) = match (stepping.integrator, stepping.tolerance) {
             // RK4 makes steps of its own within a recording interval.
@@ -207,22 +182,18 @@ impl<'m, const D: usize> Run<'m, D> {
         };
         let grid = Grid::new(interval, longest, halvings);
         let tolerances = stepping.tolerance.map(|tolerance| Tolerances::new(tolerance, hole_radius));
-        let stepper = match stepping.integrator {
-            Integrator::GeneralizedAlpha => Stepper::GeneralizedAlpha(Box::new(GeneralizedAlpha::new(
+        let method: Box<dyn Method<D>> = match stepping.integrator {
+            Integrator::GeneralizedAlpha => Box::new(GeneralizedAlpha::new(
                 &system,
                 initial,
                 &forces,
                 grid.step(0),
                 stepping.contact_sweeps,
                 stepping.spectral_radius.unwrap_or(generalized_alpha::SPECTRAL_RADIUS),
-            )?)),
-            Integrator::Esdirk4 => Stepper::Esdirk(Box::new(Esdirk::new(
-                &system,
-                initial,
-                &forces,
-                &grid,
-                stepping.contact_sweeps,
-            )?)),
+            )?),
+            Integrator::Esdirk4 => {
+                Box::new(Esdirk::new(&system, initial, &forces, &grid, stepping.contact_sweeps)?)
+            }
             Integrator::Rk4 => {
                 if stepping.tolerance.is_none() && stepping.step > rk4_limit {
                     let limit = rk4_limit;
@@ -230,7 +201,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 }
                 let largest = stepping.step.min(BELOW_RK4_LIMIT * rk4_limit);
                 let largest = if stepping.tolerance.is_none() { stepping.step } else { largest };
-                Stepper::Rk4(Box::new(Rk4::new(&system, &forces, largest, stepping.tolerance, hole_radius)?))
+                Box::new(Rk4::new(&system, &forces, largest, stepping.tolerance, hole_radius)?)
             }
         };
         // A step may end beyond the block.
@@ -245,7 +216,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 // What happens at once is resolved; after it steps double as long as they may.
                 level: if tolerances.is_some() { grid.top() / 2 } else { grid.top() },
                 ceiling: grid.top(),
-                state: State::at_rest(&start, stepping.step),
+                state: State::at_rest(&start, forces.points.start(), stepping.step),
                 work: Work::default(),
                 monitor: SweepMonitor::default(),
                 errors: ErrorSum::default(),
@@ -259,12 +230,12 @@ impl<'m, const D: usize> Run<'m, D> {
             },
             model,
             system,
-            contact: ContactForces::none(&forces),
+            acting: ActingForces::none(&forces),
             snapshots: Recorder::new(model, &forces, of_a_step),
             forces,
             initial: start,
             rest,
-            stepper,
+            method,
             ledger,
             samples,
             grid,
@@ -501,11 +472,13 @@ impl<'m, const D: usize> Run<'m, D> {
         let n = state.displacement.nodes();
         let (mut forces, mut linear, mut damped) =
             (NodalField::zeros(n), vec![[0.0; D]; n], vec![[0.0; D]; n]);
-        let contact = &mut self.contact;
+        let acting = &mut self.acting;
+        acting.unknowns.copy_from_slice(&state.points.unknowns);
         let mut external = self.forces.load.clone();
-        self.forces.unbalance.add(time, &mut external);
+        self.forces.add_of_time(time, acting, &mut external);
         let rates = |group: usize, dof: usize| state.velocity.groups()[group][dof];
-        self.forces.contact_into(&state.displacement, rates, contact, &external, &mut forces);
+        let at = (time, &state.points);
+        self.forces.add_of_motion(at, &state.displacement, rates, acting, &external, &mut forces);
         let mut right = forces.to_nodes();
         self.system.stiffness.multiply_into(&state.displacement.to_nodes(), &mut linear);
         self.system.damping.multiply_into(&state.velocity.to_nodes(), &mut damped);
@@ -518,34 +491,40 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         rk4::mass_factor(&self.system)?.solve_in_place(&mut right);
         state.acceleration.copy_from_nodes(&right);
-        state.stage_power =
-            self.ledger.power(&state.velocity, &state.displacement, contact, &self.forces, time);
+        state.stage_power = self.ledger.power(&state.velocity, &state.displacement, acting, &self.forces);
+        let motion = self.forces.motion_of(&state.displacement, &state.velocity);
+        let mut rates = std::mem::take(&mut state.points.rates);
+        self.forces.points.rates(time, &motion, (&state.points.unknowns, &state.points), &mut rates);
+        state.points.rates = rates;
         Ok(())
     }
 
-    /// Asks the law what the wall does at the present state.
+    /// Evaluates the wall at the present state.
     fn touch(&mut self) {
         let state = &self.progress.state;
-        self.forces.contact_at(&state.displacement, &state.velocity, &mut self.contact);
+        self.forces.wall.contact_at(&state.displacement, &state.velocity, &mut self.acting.wall);
+    }
+
+    /// Takes the step that led to the present state into the memories of forces.
+    fn commit(&mut self) {
+        let time = self.time();
+        let State { displacement, velocity, points, .. } = &mut self.progress.state;
+        self.forces.points.commit(time, &self.forces.motion_of(displacement, velocity), points);
+        self.acting.unknowns.copy_from_slice(&points.unknowns);
     }
 
     /// Enters the present contacts into the statistics, after a step of so many seconds, and the part of them in the orbit window.
     fn observe(&mut self, durations: [f64; 2]) {
         let Progress { contacts, state, .. } = &mut self.progress;
         let (x, sticking_speed) = (&state.displacement, self.model.scenario.contact.friction_reference_speed);
-        self.contact.each_node(contacts.len(), |node, contact| {
+        self.acting.wall.each_node(contacts.len(), |node, contact| {
             contacts[node].observe([x[(node, U)], x[(node, V)]], &contact, sticking_speed, durations);
         });
     }
 
     /// Takes the largest forces within the step into the statistics.
     fn note_peaks(&mut self) {
-        let peaks = match &self.stepper {
-            Stepper::GeneralizedAlpha(method) => method.solver.peaks(),
-            Stepper::Esdirk(method) => method.solver.peaks(),
-            Stepper::Rk4(_) => return,
-        };
-        for (nodes, peaks) in self.progress.contacts.chunks_mut(Four::LANES).zip(peaks) {
+        for (nodes, peaks) in self.progress.contacts.chunks_mut(Four::LANES).zip(self.method.peaks()) {
             for (node, peak) in nodes.iter_mut().zip(peaks.to_array()) {
                 node.largest_normal_force = node.largest_normal_force.max(peak);
             }
@@ -577,9 +556,9 @@ impl<'m, const D: usize> Run<'m, D> {
             let motion = |node: usize| {
                 let end =
                     [&state.displacement, &state.velocity, &state.acceleration].map(|field| field.node(node));
-                match &self.stepper {
-                    Stepper::Esdirk(method) if at < *ticks => {
-                        let start_motion = method.start().map(|field| field.node(node));
+                match self.method.start_of_step() {
+                    Some(start_of_step) if at < *ticks => {
+                        let start_motion = start_of_step.map(|field| field.node(node));
                         let step = self.grid.time(*ticks - start);
                         dense::within(
                             step,
@@ -629,52 +608,25 @@ impl<'m, const D: usize> Run<'m, D> {
     fn advance(&mut self, end: u64) -> Result<(), TransientError> {
         let time = self.time();
         let start = self.progress.ticks;
-        let mut level = self.grid.level_at(start, end, self.progress.level.min(self.progress.ceiling));
-        let nodes = self.model.node_count();
-        let Self { forces, stepper, ledger, contact, progress, grid, tolerances, .. } = self;
-        let (state, errors) = (&mut progress.state, &mut progress.errors);
-        match stepper {
-            Stepper::GeneralizedAlpha(method) => {
-                method.advance(forces, time, state, contact, Books { ledger, errors });
-                progress.monitor.merge(&mut method.solver.monitor);
-            }
-            Stepper::Esdirk(method) => {
-                loop {
-                    method.attempt(level, forces, time, state, contact, ledger);
-                    let Some(tolerances) = tolerances else { break };
-                    let error = method.error(level, forces, state);
-                    let error = tolerances.relative(&error, errors.motion(nodes));
-                    let next = adaptive::next_level(level, error).min(grid.top());
-                    let is_within = error <= 1.0;
-                    if is_within || level == 0 {
-                        progress.unresolved += u64::from(!is_within);
-                        progress.level = next;
-                        break;
-                    }
-                    progress.rejected += 1;
-                    level = next;
-                }
-                method.accept(level, state, Books { ledger, errors });
-                progress.monitor.merge(&mut method.solver.monitor);
-            }
-            Stepper::Rk4(method) => {
-                let outcome = method.advance(forces, time, grid.step(0), state, Books { ledger, errors });
-                progress.rejected += std::mem::take(&mut method.rejected);
-                if outcome.is_err() {
-                    return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
-                }
-            }
-        }
-        let (made, range) = match &mut self.stepper {
-            Stepper::Rk4(method) => (std::mem::take(&mut method.steps), method.step_range),
-            _ => (1, [self.grid.step(level); 2]),
+        let level = self.grid.level_at(start, end, self.progress.level.min(self.progress.ceiling));
+        let Self { forces, method, ledger, acting, progress, grid, tolerances, .. } = self;
+        let ahead = StepAhead { time, level, grid, tolerances: tolerances.as_ref() };
+        let books = Books { ledger, errors: &mut progress.errors };
+        let Ok(made) = method.advance(forces, ahead, &mut progress.state, acting, books) else {
+            return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
         };
-        let progress = &mut self.progress;
-        progress.steps += made;
-        progress.step_range = [progress.step_range[0].min(range[0]), progress.step_range[1].max(range[1])];
+        let StepMade { level, next_level, steps, step_range, rejected, unresolved, mut monitor } = made;
+        progress.level = next_level.unwrap_or(progress.level);
+        progress.monitor.merge(&mut monitor);
+        progress.rejected += rejected;
+        progress.unresolved += unresolved;
+        progress.steps += steps;
+        let [shortest, longest] = progress.step_range;
+        progress.step_range = [shortest.min(step_range[0]), longest.max(step_range[1])];
         progress.ticks += 1 << level;
         self.check_bounds()?;
         self.touch();
+        self.commit();
         let [from, to] =
             [self.orbit_samples.start, self.orbit_samples.end].map(|sample| self.grid.at_sample(sample));
         let counted = self.progress.ticks.min(to).saturating_sub(start.max(from));
@@ -721,29 +673,6 @@ impl<'m, const D: usize> Run<'m, D> {
     }
 }
 
-impl<const D: usize> State<D> {
-    /// Takes over another state of the same string.
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { displacement, velocity, acceleration, stage_power, adaptive_step } = self;
-        displacement.copy_from(&other.displacement);
-        velocity.copy_from(&other.velocity);
-        acceleration.copy_from(&other.acceleration);
-        *stage_power = other.stage_power;
-        *adaptive_step = other.adaptive_step;
-    }
-
-    pub(super) fn at_rest(displacement: &NodalField<D>, adaptive_step: f64) -> Self {
-        let zero = NodalField::zeros(displacement.nodes());
-        Self {
-            displacement: displacement.clone(),
-            velocity: zero.clone(),
-            acceleration: zero,
-            stage_power: Work::default(),
-            adaptive_step,
-        }
-    }
-}
-
 /// The recording intervals of the scenario's fixed orbit window, out of so many samples; none where it is settled.
 fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
     let Some(window) = scenario.orbit_window() else { return 0..0 };
@@ -779,4 +708,27 @@ fn push<const D: usize>(
         |other: usize| if other == node { x } else { freedoms.among(&motion(other).0, rest[other]) };
     let torque = torque(model, node, of_node);
     history.push(&x, &freedoms.among(&v, [0.0; DOFS]), torque);
+}
+
+#[cfg(test)]
+impl<const D: usize> Run<'_, D> {
+    /// Adds to the speed of a degree of freedom, by node and place, at the start.
+    pub(super) fn kick(&mut self, place: (usize, usize), speed: f64) {
+        self.progress.state.velocity[place] += speed;
+        self.accelerate().expect("a mass matrix that is not singular");
+    }
+
+    /// Advances to a sample.
+    pub(super) fn advance_to_sample(&mut self, sample: u64) -> Result<(), TransientError> {
+        let end = self.grid.at_sample(sample);
+        while self.progress.ticks < end {
+            self.advance(end)?;
+        }
+        Ok(())
+    }
+
+    /// Unknowns of forces at the present state.
+    pub(super) fn unknowns(&self) -> &[f64] {
+        &self.progress.state.points.unknowns
+    }
 }

@@ -5,7 +5,8 @@ use std::ops::Range;
 use drillsweep_scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
-use super::forces::{ContactForces, Forces};
+use super::forces::Forces;
+use crate::force::wall::ContactForces;
 use crate::freedom::{DOFS, Freedoms, THETA_Z, U, V, W};
 use crate::linalg::NodalField;
 use crate::model::{Model, NodalVector};
@@ -146,7 +147,7 @@ impl<const D: usize> Recorder<D> {
             most: most as usize,
             displacement: NodalField::zeros(nodes),
             velocity: NodalField::zeros(nodes),
-            contact: ContactForces::none(forces),
+            contact: ContactForces::none(&forces.wall),
             whole: vec![[0.0; DOFS]; nodes],
         })
     }
@@ -169,7 +170,7 @@ impl<const D: usize> Recorder<D> {
             self.velocity.set_node(node, v);
             *whole = freedoms.among(&x, *rest);
         }
-        forces.contact_at(&self.displacement, &self.velocity, &mut self.contact);
+        forces.wall.contact_at(&self.displacement, &self.velocity, &mut self.contact);
         let Self { block, whole, velocity, contact, .. } = self;
         for (&series, values) in block.series.iter().zip(&mut block.values) {
             let mut of_motion = |dof: usize| values.extend(whole.iter().map(|x| x[dof] as f32));

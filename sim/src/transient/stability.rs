@@ -8,12 +8,13 @@ use super::rk4::mass_factor;
 use super::{TransientError, esdirk, generalized_alpha};
 use crate::beam::ElementVector;
 use crate::contact::{ContactNode, ContactSegment, whole_segment};
-use crate::effect::structural_damping;
+
 use crate::freedom::{DOFS, LATERAL, THETA_Z, U, V};
 use crate::linalg::{BlockTridiagonal, Factor, SingularBlock};
 use crate::model::{Model, add_element_vector, element_values};
 use crate::motion::DynamicSystem;
 use crate::statics::Equilibrium;
+use crate::term::structural_damping;
 
 /// End of RK4's region of stability on the negative real axis, times the step; on the imaginary one it ends at 2 sqrt 2 = 2.828 (Hairer
 /// and Wanner 1996, section IV.2).
@@ -104,9 +105,10 @@ fn sweep_factor(
     coefficients: StageCoefficients,
     is_implicit: bool,
 ) -> Result<(f64, usize), SingularBlock> {
-    if !model.effects.contact {
+    if !model.effects.contact && !model.has_forces_of_motion() {
         return Ok((0.0, 0));
     }
+    let at_nodes = ForceSlopes::about(model, coefficients.velocity);
     let contact = &model.scenario.contact;
     let law = model.wall.law();
     let (stiffness, damping) = (contact.stiffness, coefficients.velocity * contact.unit_damping());
@@ -126,11 +128,14 @@ fn sweep_factor(
         .iter()
         .zip(normal_force)
         .zip(&inverse.diagonal)
-        .map(|((node, force), inverse)| {
+        .enumerate()
+        .map(|(i, ((node, force), inverse))| {
             let site = node.site();
             // Along elements, nodes have no share of the force.
             let force = if site.stiffness_share > 0.0 { *force } else { 0.0 };
-            let (lateral, twist) = slopes(&site, force);
+            // The wall does not move what is held.
+            let (lateral, twist) = if system.held[i][U] { (0.0, 0.0) } else { slopes(&site, force) };
+            let (lateral, twist) = (lateral + at_nodes.lateral(i), twist + at_nodes.twist(i));
             [
                 (lateral, own(0.5 * (inverse[(U, U)] + inverse[(V, V)]))),
                 (twist, own(inverse[(THETA_Z, THETA_Z)])),
@@ -188,8 +193,6 @@ fn sweep_factor(
         for ((force, x), segment) in along.iter_mut().zip(&points).zip(&segments) {
             *force = segment.pushed(x);
         }
-        // The held top node never touches.
-        forces[0] = [0.0; DOFS];
         x.clone_from_slice(&forces);
         for (force, segment) in along.iter().zip(&segments) {
             segment.add_loads(force, &mut x);
@@ -231,6 +234,35 @@ fn sweep_factor(
         values.chain(points.as_flattened_mut().as_flattened_mut()).for_each(|value| *value /= factor);
     }
     Ok((factor, node))
+}
+
+/// Slopes of the forces at nodes but the wall's, as a step makes them: stiffness and c_v times damping.
+struct ForceSlopes(Option<BlockTridiagonal>);
+
+impl ForceSlopes {
+    fn about(model: &Model, speed: f64) -> Self {
+        if !model.has_forces_of_motion() {
+            return Self(None);
+        }
+        let zero = BlockTridiagonal::zeros(model.node_count());
+        let (mut stiffness, mut damping) = (zero.clone(), zero);
+        model.add_force_tangents(&model.at_rest(&[]), &mut stiffness, Some(&mut damping));
+        Self(Some(BlockTridiagonal::combine(0.0, &stiffness, speed, &damping, 1.0, &stiffness)))
+    }
+
+    /// Slope of a node's lateral force as far as it opposes the motion \[N/m\].
+    fn lateral(&self, node: usize) -> f64 {
+        self.of(node, U).max(self.of(node, V))
+    }
+
+    /// Slope of a node's torque as far as it opposes the motion \[N m/rad\].
+    fn twist(&self, node: usize) -> f64 {
+        self.of(node, THETA_Z)
+    }
+
+    fn of(&self, node: usize, dof: usize) -> f64 {
+        self.0.as_ref().map_or(0.0, |slopes| slopes.diagonal[node][(dof, dof)].max(0.0))
+    }
 }
 
 /// An element in the wall with its whole length, at its two Gauss points.

@@ -1,9 +1,9 @@
 //! Weight of the mud in the bore less the buoyancy of the mud outside: without it the string weighs what its steel weighs.
 
 use super::scene::{has_mud, no};
-use super::{Call, ElementAtRest, RestTerms, Room, Scene};
+use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
-pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     let mud = has_mud(scene);

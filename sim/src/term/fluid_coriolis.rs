@@ -1,15 +1,15 @@
 //! Coriolis terms of both flows: without them a flow does no work on a bend that travels.
 
 use super::scene::{LateralWave, has_flow};
-use super::{Account, ElementInMotion, MotionTerms, Room};
+use super::{Account, ElementInMotion, MotionTerms, Term};
 
-pub(super) const ROOM: Room =
-    Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(has_flow) };
+pub(crate) const TERM: Term =
+    Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(has_flow) };
 
 /// Work done by the flows: of the Coriolis terms, whose symmetric part is where the section changes and at the end, and of the follower
 /// forces in the stiffness, which are those of the [flow](super::flow_stiffness) at its end and of the
 /// [torque](super::torque_stiffening).
-pub(super) const WORK: Account =
+pub(crate) const WORK: Account =
     Account::given("work_flow_and_torque", |booked| booked.matrices + booked.follower);
 
 /// To first order the Coriolis term c changes w by c k / (2 m w).

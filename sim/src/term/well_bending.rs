@@ -1,9 +1,9 @@
 //! Bending of a straight pipe into the curved hole: without it the string is stress-free along the hole's axis.
 
 use super::scene::{no, yes};
-use super::{Call, ElementAtRest, RestTerms, Room, Scene};
+use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
-pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     if scene.is_straight() { no("the hole is straight along the string") } else { yes("the hole is curved") }

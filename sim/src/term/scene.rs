@@ -25,23 +25,23 @@ pub struct Call {
 }
 
 /// The scene calls for the effect.
-pub(super) const fn yes(reason: &'static str) -> Call {
+pub(crate) const fn yes(reason: &'static str) -> Call {
     Call { active: true, reason }
 }
 
 /// It does not.
-pub(super) const fn no(reason: &'static str) -> Call {
+pub(crate) const fn no(reason: &'static str) -> Call {
     Call { active: false, reason }
 }
 
 impl Scene<'_> {
     /// Whether the string turns.
-    pub(super) fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.scenario.operation.rotation_speed_rpm != 0.0
     }
 
     /// Whether the hole is straight along the whole string.
-    pub(super) fn is_straight(&self) -> bool {
+    pub(crate) fn is_straight(&self) -> bool {
         let sections = self.scenario.string.sections.iter();
         let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
         self.scenario.well.survey.windows(2).all(|stations| {
@@ -52,12 +52,12 @@ impl Scene<'_> {
 }
 
 /// Call for an effect of mud, wherever it is.
-pub(super) fn has_mud(scene: &Scene<'_>) -> Call {
+pub(crate) fn has_mud(scene: &Scene<'_>) -> Call {
     if scene.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
 }
 
 /// Call for an effect of flowing mud.
-pub(super) fn has_flow(scene: &Scene<'_>) -> Call {
+pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
     match &scene.scenario.mud {
         None => no("the hole is dry"),
         Some(mud) if mud.flow_rate == 0.0 => no("the mud does not flow"),
@@ -66,7 +66,7 @@ pub(super) fn has_flow(scene: &Scene<'_>) -> Call {
 }
 
 /// Call for friction at the wall.
-pub(super) fn has_friction(scene: &Scene<'_>) -> Call {
+pub(crate) fn has_friction(scene: &Scene<'_>) -> Call {
     let law = &scene.scenario.contact;
     match (scene.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {
         (false, _) => no("there is no contact"),
@@ -81,24 +81,24 @@ fn same_direction(a: &SurveyStation, b: &SurveyStation) -> bool {
 }
 
 /// A lateral wave along one section that turns with the string: its wave number k has m w^2 = E I k^4, so that k^2 = w (m/(E I))^(1/2).
-pub(super) struct LateralWave {
+pub(crate) struct LateralWave {
     /// The section.
-    pub(super) beam: BeamSection,
+    pub(crate) beam: BeamSection,
     /// Density of its material \[kg/m3\].
-    pub(super) density: f64,
+    pub(crate) density: f64,
     /// The flows past it, where there is mud.
-    pub(super) flow: Option<FlowMomentum>,
+    pub(crate) flow: Option<FlowMomentum>,
     /// m, mud included \[kg/m\].
-    pub(super) mass: f64,
+    pub(crate) mass: f64,
     /// w \[rad/s\]; without rotation there is no such wave.
-    pub(super) frequency: f64,
+    pub(crate) frequency: f64,
     /// k \[1/m\].
-    pub(super) wave_number: f64,
+    pub(crate) wave_number: f64,
 }
 
 impl LateralWave {
     /// That along a section of a scenario's string.
-    pub(super) fn along(section: &Section, scenario: &Scenario) -> Self {
+    pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
         let material = scenario.string.body_material(section);
         let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);
         let flow_of =

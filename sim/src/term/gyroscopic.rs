@@ -1,10 +1,10 @@
 //! Gyroscopic coupling of the lateral rotations: without it forward and backward whirl have the same frequency.
 
 use super::scene::{LateralWave, no, yes};
-use super::{Call, ElementInMotion, MotionTerms, Room, Scene};
+use super::{Call, ElementInMotion, MotionTerms, Scene, Term};
 
-pub(super) const ROOM: Room =
-    Room { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Room::new(called_for) };
+pub(crate) const TERM: Term =
+    Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     if scene.turns() { yes("the string turns") } else { no("the string does not turn") }

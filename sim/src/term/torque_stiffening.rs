@@ -1,9 +1,9 @@
 //! Stiffening by the internal torque: without it torque couples no lateral motion.
 
 use super::scene::{no, yes};
-use super::{Call, ElementAtRest, RestTerms, Room, Scene};
+use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
-pub(super) const ROOM: Room = Room { at_rest: Some(at_rest), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     match (scene.scenario.operation.torque_on_bit != 0.0, scene.active.friction_torque) {

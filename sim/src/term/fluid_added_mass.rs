@@ -1,9 +1,9 @@
 //! Added mass of the mud inside and outside, equation (28): without it only steel moves.
 
 use super::scene::has_mud;
-use super::{ElementInMotion, MotionTerms, Room};
+use super::{ElementInMotion, MotionTerms, Term};
 
-pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(has_mud) };
+pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(has_mud) };
 
 fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     let Some(momentum) = element.momentum else { return };

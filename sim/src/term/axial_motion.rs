@@ -1,10 +1,10 @@
 //! Axial motion: without it every axial displacement stays at its static value and is not solved for.
 
 use super::scene::{no, yes};
-use super::{Call, Room, Scene};
+use super::{Call, Scene, Term};
 use crate::freedom::W;
 
-pub(super) const ROOM: Room = Room { moves: Some(W), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { moves: Some(W), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     if scene.is_straight() {

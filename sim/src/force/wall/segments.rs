@@ -3,18 +3,17 @@
 //! Element e joins the nodes e and e + 1, so that the elements of a group begin at the nodes of the group of the same number and end at those after
 //! each of them.
 
-use super::forces::SweepChange;
+use super::lanes::SweepChange;
 use crate::contact::{
     ContactNode, ContactParameters, ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion,
-    Surface, dot,
+    Surface, Wall, dot,
 };
 use crate::freedom::{Freedoms, THETA_X, THETA_Y, U, V};
 use crate::linalg::{Four, InverseBands, Lane, NodalField, next_lane};
-use crate::model::Model;
 
 /// Elements as they meet the wall; empty if the nodes alone do.
 #[derive(Debug, Clone)]
-pub(super) struct Segments<const D: usize> {
+pub(crate) struct Segments<const D: usize> {
     /// Elements that do not exist have a clearance that nothing reaches.
     groups: Vec<ContactSegment<Four>>,
     freedoms: Freedoms<D>,
@@ -27,14 +26,14 @@ pub(super) struct Segments<const D: usize> {
 
 /// Loads of the wall along elements, as of one evaluation.
 #[derive(Debug, Clone)]
-pub(super) struct SegmentForces {
+pub(crate) struct SegmentForces {
     groups: Vec<SegmentForce<Four>>,
     /// Groups of which any element touches; the loads of the others mean nothing.
     touches: Vec<bool>,
 }
 
 /// A law of the wall along four elements side by side: given their group and their motion it replaces their loads so far. False if none touches.
-pub(super) trait LawAlong:
+pub(crate) trait LawAlong:
     Fn(&ContactSegment<Four>, usize, &SegmentMotion<Four>, &mut SegmentForce<Four>) -> bool
 {
 }
@@ -46,11 +45,11 @@ impl<F> LawAlong for F where
 
 /// Powers \[W\] of the wall along elements, and the sum of its torques.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SegmentPower {
-    pub(super) normal: Four,
-    pub(super) friction: Four,
+pub(crate) struct SegmentPower {
+    pub(crate) normal: Four,
+    pub(crate) friction: Four,
     /// \[N m\].
-    pub(super) torque: Four,
+    pub(crate) torque: Four,
 }
 
 impl SegmentForces {
@@ -61,7 +60,7 @@ impl SegmentForces {
     }
 
     /// The groups of elements of which any touches, with their numbers.
-    pub(super) fn touching(&self) -> impl Iterator<Item = (usize, &SegmentForce<Four>)> {
+    pub(crate) fn touching(&self) -> impl Iterator<Item = (usize, &SegmentForce<Four>)> {
         let groups = self.groups.iter().zip(&self.touches).enumerate();
         groups.filter(|(_, (_, touches))| **touches).map(|(group, (force, _))| (group, force))
     }
@@ -82,8 +81,8 @@ impl SegmentForces {
 }
 
 impl<const D: usize> Segments<D> {
-    pub(super) fn new(model: &Model, freedoms: Freedoms<D>, held: &[[bool; D]], rotation_speed: f64) -> Self {
-        let groups = model.wall.segments().chunks(LANES).map(|segments| {
+    pub(super) fn new(wall: &Wall, freedoms: Freedoms<D>, held: &[[bool; D]], rotation_speed: f64) -> Self {
+        let groups = wall.segments().chunks(LANES).map(|segments| {
             let lanes = |value: fn(&ContactSegment<f64>) -> f64, never: f64| {
                 Four::new(std::array::from_fn(|lane| segments.get(lane).map_or(never, value)))
             };
@@ -159,8 +158,7 @@ impl<const D: usize> Segments<D> {
         (0..self.groups.len()).map(of_group).collect()
     }
 
-    /// Loads of the wall by `law`, which is given the group, its elements' motion and the loads so far, into `out`, and added to `all`, from which degrees of
-    /// freedom that are held take nothing: they keep those of `others`.
+    /// Loads of the wall by `law`, which is given the group, its elements' motion and the loads so far, into `out`, and added to `all`.
     #[inline(always)]
     pub(super) fn add_forces(
         &self,
@@ -168,15 +166,12 @@ impl<const D: usize> Segments<D> {
         x: &NodalField<D>,
         rates: &impl Fn(usize, usize) -> Four,
         out: &mut SegmentForces,
-        (others, all): (&NodalField<D>, &mut NodalField<D>),
+        all: &mut NodalField<D>,
     ) {
         for group in 0..self.groups.len() {
             if self.replace(group, law, x, rates, out) {
                 self.add(group, &out.groups[group], all.groups_mut());
             }
-        }
-        for &place in &self.held {
-            all[place] = others[place];
         }
     }
 
@@ -243,7 +238,7 @@ impl<const D: usize> Segments<D> {
 
     /// Powers of loads on groups of elements that move with `velocity`.
     #[inline(always)]
-    pub(super) fn power(&self, forces: &SegmentForces, velocity: &NodalField<D>) -> SegmentPower {
+    pub(crate) fn power(&self, forces: &SegmentForces, velocity: &NodalField<D>) -> SegmentPower {
         let mut power = SegmentPower { normal: Four::ZERO, friction: Four::ZERO, torque: Four::ZERO };
         for (group, force) in forces.touching() {
             let rates = self.planes(group, &|group, dof| value(velocity, group, dof));
@@ -259,7 +254,7 @@ impl<const D: usize> Segments<D> {
     }
 
     /// Changes between two iterations of a solve at elements that touch, as
-    /// [`Forces::sweep_change`](super::forces::Forces::sweep_change) has them.
+    /// [`WallForces::sweep_change`](super::WallForces::sweep_change) has them.
     pub(super) fn sweep_change(
         &self,
         law: &ContactParameters<Four>,

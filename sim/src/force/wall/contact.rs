@@ -1,20 +1,20 @@
 //! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::contact`], which the time step asks for
 //! four nodes side by side.
 
-use super::scene::yes;
-use super::{Account, Call, Room, Scene};
+use super::{FRICTION_WORK, NORMAL_WORK};
 use crate::freedom::LATERAL;
 use crate::linalg::Lane;
+use crate::term::{Account, Call, Scene, Term, yes};
 
-pub(super) const ROOM: Room = Room::new(called_for);
+pub(crate) const TERM: Term = Term::new(called_for);
 
 /// Energy dissipated by the contacts' dampers: what the wall takes from the motion along its normals and does not store.
-pub(super) const DISSIPATED: Account =
-    Account::taken("dissipated_contact", |booked| -booked.nodal.normal_contact - booked.wall);
+pub(crate) const DISSIPATED: Account =
+    Account::taken("dissipated_contact", |booked| -booked.by_force(NORMAL_WORK) - booked.wall);
 
 /// Work of the wall's normal and friction forces on the motion: what the ledger's residual is compared with.
 pub(crate) const WORK: Account =
-    Account::beside("contact_work", |booked| booked.nodal.normal_contact + booked.nodal.friction);
+    Account::beside("contact_work", |booked| booked.by_force(NORMAL_WORK) + booked.by_force(FRICTION_WORK));
 
 fn called_for(_: &Scene<'_>) -> Call {
     yes("the string may reach the wall; while it does not, only the distance is looked at")

@@ -90,7 +90,7 @@ pub struct MotionTerms {
 
 impl MotionTerms {
     /// Adds a matrix that multiplies velocities, with the account of its work; a skew one does none.
-    pub(super) fn add_damping(&mut self, account: Option<&Account>, matrix: ElementMatrix) {
+    pub(crate) fn add_damping(&mut self, account: Option<&Account>, matrix: ElementMatrix) {
         let sum = &mut self.damping[place_of_damping(account)];
         *sum = Some(sum.map_or(matrix, |sum| sum + matrix));
     }

@@ -1,9 +1,9 @@
 //! Rayleigh damping: without it the structure takes no energy.
 
 use super::scene::{no, yes};
-use super::{Account, Call, ElementInMotion, MotionTerms, Room, Scene};
+use super::{Account, Call, ElementInMotion, MotionTerms, Scene, Term};
 
-pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(called_for) };
 
 /// Energy dissipated by Rayleigh damping: int v^T C v dt.
 pub(crate) const DISSIPATED: Account = Account::taken("dissipated_structure", |booked| booked.matrices);

@@ -1,12 +1,12 @@
 //! Damping of lateral motion by the mud, by its axial flow (C_f) and by the string's rotation (k): without it the mud takes no energy.
 
 use super::scene::has_mud;
-use super::{Account, ElementInMotion, MotionTerms, Room};
+use super::{Account, ElementInMotion, MotionTerms, Term};
 
-pub(super) const ROOM: Room = Room { in_motion: Some(in_motion), ..Room::new(has_mud) };
+pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(has_mud) };
 
 /// Energy dissipated by the mud: int v^T (mud damping) v dt.
-pub(super) const DISSIPATED: Account = Account::taken("dissipated_fluid", |booked| booked.matrices);
+pub(crate) const DISSIPATED: Account = Account::taken("dissipated_fluid", |booked| booked.matrices);
 
 fn in_motion(element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
     let Some(flow) = element.flow else { return };

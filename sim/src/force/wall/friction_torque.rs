@@ -1,14 +1,14 @@
 //! Friction torque about the string's axis at contacts: without it rubbing does not twist the string. Its law is [`crate::contact`], with
 //! that of [friction](super::friction).
 
-use super::scene::has_friction;
-use super::{Account, Room};
+use super::ROTATION_WORK;
+use crate::term::{Account, Term, has_friction};
 
-pub(super) const ROOM: Room = Room::new(has_friction);
+pub(crate) const TERM: Term = Term::new(has_friction);
 
 /// Work done by the imposed rotation against friction, as far as it acts through the contacts: - Omega int (sum of the torques about e3) dt.
-pub(super) const ROTATION: Account =
-    Account::given("work_rotation", |booked| booked.nodal.rotation).passed_on();
+pub(crate) const ROTATION: Account =
+    Account::given("work_rotation", |booked| booked.by_force(ROTATION_WORK)).passed_on();
 
 /// Power \[W\] of the imposed rotation \[rad/s\] against friction torques of so much in all \[N m\]: nodes turn in a frame that turns
 /// with the string, and the drive works against the torque there.

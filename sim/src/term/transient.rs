@@ -1,9 +1,9 @@
 //! The run in time: without it a run ends after its equilibrium and hydraulic profile.
 
 use super::scene::{no, yes};
-use super::{Call, Room, Scene};
+use super::{Call, Scene, Term};
 
-pub(super) const ROOM: Room = Room::new(called_for);
+pub(crate) const TERM: Term = Term::new(called_for);
 
 fn called_for(scene: &Scene<'_>) -> Call {
     let recording = &scene.scenario.recording;

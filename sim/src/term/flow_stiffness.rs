@@ -2,10 +2,10 @@
 //! mud's momentum does nothing.
 
 use super::scene::{LateralWave, has_flow};
-use super::{ElementAtRest, RestTerms, Room};
+use super::{ElementAtRest, RestTerms, Term};
 
-pub(super) const ROOM: Room =
-    Room { frequency_change: Some(frequency_change), at_rest: Some(at_rest), ..Room::new(has_flow) };
+pub(crate) const TERM: Term =
+    Term { frequency_change: Some(frequency_change), at_rest: Some(at_rest), ..Term::new(has_flow) };
 
 /// To first order the flows' centrifugal stiffness S changes w by S k^2 / (2 m w^2).
 fn frequency_change(wave: &LateralWave) -> f64 {

@@ -1,9 +1,9 @@
 //! Gravity: without it neither the string nor the mud weighs anything.
 
 use super::scene::yes;
-use super::{Call, Room, Scene};
+use super::{Call, Scene, Term};
 
-pub(super) const ROOM: Room = Room::new(called_for);
+pub(crate) const TERM: Term = Term::new(called_for);
 
 /// Gravity \[m/s2\], the value behind the buoyed weights of the hydraulic tables.
 pub const GRAVITY: f64 = 9.81;

@@ -1,10 +1,10 @@
 //! Axial drag of the annular flow on the string, upward: without it the flow changes no tension.
 
-use super::Room;
+use super::Term;
 use super::scene::has_flow;
 use crate::mud::ElementFlow;
 
-pub(super) const ROOM: Room = Room::new(has_flow);
+pub(crate) const TERM: Term = Term::new(has_flow);
 
 /// Drag on every element as it acts on the effective tension, upward \[N/m\].
 pub(crate) fn per_length(flows: &[ElementFlow]) -> Vec<f64> {

@@ -1,7 +1,5 @@
 //! The accounts of the energy ledger: each is declared by the effect whose work it tells of.
 
-use serde::{Deserialize, Serialize};
-
 /// An account of the energy ledger. What the string's energy gains is what is given to it less what is taken from it, but for the
 /// integration's own error.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +12,7 @@ pub struct Account {
     /// the vibration turns over.
     pub is_passed_on: bool,
     /// Its value by what is booked \[J\].
-    pub(crate) value: fn(&Booked) -> f64,
+    pub(crate) value: fn(&Booked<'_>) -> f64,
 }
 
 /// A side of the ledger's balance.
@@ -30,9 +28,9 @@ pub enum Side {
 
 /// Energies that the ledger has booked since the start of a run, as an account sees them \[J\].
 #[derive(Debug, Clone, Copy)]
-pub struct Booked {
-    /// Work of the nodal forces.
-    pub nodal: NodalWork,
+pub struct Booked<'a> {
+    /// Works of forces by their entries.
+    pub forces: &'a [(&'static str, f64)],
     /// Work of the matrices that multiply velocities and were added to [`MotionTerms`](super::MotionTerms) under this account,
     /// counted in the sense of its side.
     pub matrices: f64,
@@ -42,37 +40,31 @@ pub struct Booked {
     pub wall: f64,
 }
 
-/// Powers of nodal forces \[W\], or their work \[J\] once multiplied by time.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct NodalWork {
-    /// Of the unbalance on the motion.
-    pub unbalance: f64,
-    /// Of the wall's normal forces on the motion.
-    pub normal_contact: f64,
-    /// Of friction, along the wall and about the axis, on the motion.
-    pub friction: f64,
-    /// Of the imposed rotation against the friction torque.
-    pub rotation: f64,
+impl Booked<'_> {
+    /// Work of an entry of forces \[J\]; zero if there is none of that name.
+    pub fn by_force(&self, entry: &str) -> f64 {
+        self.forces.iter().find(|(name, _)| *name == entry).map_or(0.0, |(_, work)| *work)
+    }
 }
 
 impl Account {
     /// An account of work done on the string.
-    pub(super) const fn given(name: &'static str, value: fn(&Booked) -> f64) -> Self {
+    pub(crate) const fn given(name: &'static str, value: fn(&Booked<'_>) -> f64) -> Self {
         Self { name, side: Side::Given, is_passed_on: false, value }
     }
 
     /// An account of energy taken from the string.
-    pub(super) const fn taken(name: &'static str, value: fn(&Booked) -> f64) -> Self {
+    pub(crate) const fn taken(name: &'static str, value: fn(&Booked<'_>) -> f64) -> Self {
         Self { name, side: Side::Taken, is_passed_on: false, value }
     }
 
     /// An account that is told beside the balance.
-    pub(super) const fn beside(name: &'static str, value: fn(&Booked) -> f64) -> Self {
+    pub(crate) const fn beside(name: &'static str, value: fn(&Booked<'_>) -> f64) -> Self {
         Self { name, side: Side::Beside, is_passed_on: false, value }
     }
 
     /// The same, of what the drive passes straight on to steady sliding.
-    pub(super) const fn passed_on(self) -> Self {
+    pub(crate) const fn passed_on(self) -> Self {
         Self { is_passed_on: true, ..self }
     }
 }
@@ -85,15 +77,5 @@ impl Side {
             Side::Taken => sum - value,
             Side::Beside => sum,
         }
-    }
-}
-
-impl NodalWork {
-    /// Adds so many times another.
-    pub fn add(&mut self, scale: f64, other: &Self) {
-        self.unbalance += scale * other.unbalance;
-        self.normal_contact += scale * other.normal_contact;
-        self.friction += scale * other.friction;
-        self.rotation += scale * other.rotation;
     }
 }

@@ -4,11 +4,11 @@
 //! that the normal force is found with, and an implicit solve makes both agree with one motion. Apart, each would look for the node on
 //! the wall again, four nodes at a time in the innermost loop of a step.
 
-use super::scene::has_friction;
-use super::{Account, Room};
+use super::{FRICTION_WORK, ROTATION_WORK};
 use crate::linalg::Lane;
+use crate::term::{Account, Term, has_friction};
 
-pub(super) const ROOM: Room = Room::new(has_friction);
+pub(crate) const TERM: Term = Term::new(has_friction);
 
 /// Energy dissipated by sliding: what the drive does against the friction torque less the work of friction on the motion.
 ///
@@ -16,8 +16,10 @@ pub(super) const ROOM: Room = Room::new(has_friction);
 /// [`friction_torque`](super::friction_torque) off the drive has nothing to work against, so that what is left is the work of the tangential
 /// force alone, with its sign turned: negative where friction drives a backward whirl. With this effect off and the torque on it is the
 /// torque's alone, and can be negative where whirl outruns the rotation.
-pub(super) const DISSIPATED: Account =
-    Account::taken("dissipated_friction", |booked| booked.nodal.rotation - booked.nodal.friction).passed_on();
+pub(crate) const DISSIPATED: Account = Account::taken("dissipated_friction", |booked| {
+    booked.by_force(ROTATION_WORK) - booked.by_force(FRICTION_WORK)
+})
+.passed_on();
 
 /// Power \[W\] of friction on a node's motion, of the power of the whole contact force and torque and that of the normal force.
 #[inline(always)]

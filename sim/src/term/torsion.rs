@@ -1,10 +1,10 @@
 //! Torsional motion: without it every twist stays at its static value and is not solved for.
 
 use super::scene::{no, yes};
-use super::{Call, Room, Scene};
+use super::{Call, Scene, Term};
 use crate::freedom::THETA_Z;
 
-pub(super) const ROOM: Room = Room { moves: Some(THETA_Z), ..Room::new(called_for) };
+pub(crate) const TERM: Term = Term { moves: Some(THETA_Z), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     match (scene.active.friction_torque, scene.is_straight()) {

@@ -89,7 +89,7 @@ def test_the_chapter_of_columns_is_that_of_the_vocabulary() -> None:
 
 
 def test_the_readme_stays_short() -> None:
-    assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 130
+    assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 120
 
 
 class Transcript(NamedTuple):

@@ -137,7 +137,7 @@ def spectrum(
     resolved = table.attributes.get("resolved_hz")
     last = np.max(np.abs(table["frequency"]))
     if resolved is not None and resolved < last:
-        label = f"beyond what the step resolves (±{resolved:.3g} Hz)"
+        label = f"not resolved by the steps (beyond ±{resolved:.3g} Hz)"
         axes.axvspan(resolved, last, color=PALETTE[1], alpha=0.15, linewidth=0, label=label)
         axes.axvspan(-last, -resolved, color=PALETTE[1], alpha=0.15, linewidth=0)
         axes.legend(fontsize="small")

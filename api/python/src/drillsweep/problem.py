@@ -32,7 +32,7 @@ class FieldProblem:
     """One problem of a request."""
 
     detail: str
-    """Explanation of the problem, and what would be valid."""
+    """Explanation of the problem, and the valid values."""
     pointer: str | None = None
     """JSON Pointer into the request, such as `/axes/flow_rate/values/2`."""
     parameter: str | None = None

@@ -232,7 +232,7 @@ class Sweep:
             if bar:
                 bar.close()
             if not self.is_finished:
-                text = "sweep %s goes on at %s: client.sweep(%r) returns to it, its cancel() ends it"
+                text = "sweep %s continues at %s: client.sweep(%r) returns to it, its cancel() ends it"
                 _LOG.warning(text, self.id, self._client.server, self.id)
             raise
         finally:
@@ -270,8 +270,8 @@ class Sweep:
 
         One row a verified point: for each statistic, such as `orbit_radius_rms_49`, its value, that of the reference
         (`reference_orbit_radius_rms_49`) and the bias (`bias_orbit_radius_rms_49`), relative to the reference or, of
-        frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and what the accuracy
-        promises; `attributes["warnings"]` lists the statistics that exceed it.
+        frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and the promise of the
+        accuracy; `attributes["warnings"]` lists the statistics that exceed it.
         """
         return Table.from_json(self._client.get_json(f"{self.path}/verification"))
 

@@ -34,7 +34,7 @@ MEASURES = ("offset mm", "size mm", "off the wall mm", "contacts", "backward lin
 
 
 def equilibrium(point: Point) -> Iterable[Sequence[object]]:
-    """Yield what section 4.2 shows: where the string touches, its position, and the mud's coefficients."""
+    """Yield the results of section 4.2: contacts of the string, its position, and the mud's coefficients."""
     statics, profile = point.statics(), point.profile()
     touches = statics["normal_force"] > 0.0
     for name, part in (("tool joints", is_tool_joint(statics)), ("collars", statics["measured_depth"] > 89.5)):

@@ -1,9 +1,9 @@
-"""A search for what the paper behind the base case leaves open. Needs `drillsweep` and NumPy.
+"""A search over the choices that the paper behind the base case leaves open. Needs `drillsweep` and NumPy.
 
 Tran et al. 2019 (Journal of Sound and Vibration 462, 114924) draw their well without printing a survey, and their text
 leaves open how the pipe is bent into it and how friction acts on the twist. Three stages, each a set of sweeps:
 
-1. Surveys, weight on bit and torque on bit are drawn; of their equilibria those stay that are seated as in section 4.2.
+1. Surveys, weight on bit and torque on bit are drawn; equilibria that are seated as in section 4.2 stay.
 2. Each of these runs with and without mud under every reading of the text, and is compared with section 4.3.
 3. Rounds of draws in ever smaller boxes around the best points.
 
@@ -238,7 +238,7 @@ def drawn(point: Point) -> dict[str, float]:
 def submitted(
     client: Client, reading: Reading, points: Sequence[dict[str, float]], changes: dict[str, Any], name: str
 ) -> Sweep:
-    """Submit points under a reading; what is kept of each is the orbit of node 49 and the equilibrium."""
+    """Submit points under a reading; each keeps the orbit of node 49 and the equilibrium."""
     duration = changes.get("duration", CONTACT_WINDOW[1])
     return client.submit(
         PRESET,

@@ -89,13 +89,13 @@ enum Command {
     Fetch(fetch::FetchArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
-    /// Print what a scenario will take, without running it: effects and why, steps and time at each accuracy.
+    /// Print a plan of a scenario, without running it: effects with reasons, steps and time at each accuracy.
     Plan(plan::PlanArguments),
-    /// Measure what accuracy costs: methods, steps and meshes against a converged run.
+    /// Measure the cost of accuracy: methods, steps and meshes relative to a converged run.
     Cost(cost::CostArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
-    /// Run scenes drawn at random over wide ranges and report how each ends.
+    /// Run random scenarios over wide ranges and report how each ends.
     Soak(soak::SoakArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
@@ -110,9 +110,9 @@ enum Command {
     /// Make, list and revoke tokens.
     #[command(subcommand)]
     Token(token::TokenCommand),
-    /// Verify a data directory in full and report what is wrong with it, if anything.
+    /// Verify a data directory in full and report all problems.
     Check(check::CheckArguments),
-    /// Carry a store over to another database and object store: from one machine to PostgreSQL and S3, or back.
+    /// Copy a store into another database and object store: from one machine to PostgreSQL and S3, or back.
     Migrate(migrate::MigrateArguments),
     /// Report by the exit status whether the server, or a worker on this machine, is ready; for supervisors.
     Health(health::HealthArguments),
@@ -127,7 +127,7 @@ enum Command {
 
 #[cfg(feature = "opentelemetry")]
 impl Command {
-    /// Under which name its traces appear; none of commands that only run for a moment.
+    /// Name of its traces; none for commands that run for a moment only.
     fn service(&self) -> Option<&'static str> {
         match self {
             Command::Up(_) | Command::Serve(_) => Some("drillsweep-server"),
@@ -137,7 +137,7 @@ impl Command {
     }
 }
 
-/// Does what the command line asks for, and reports errors to standard error.
+/// Runs the command, and reports errors to standard error.
 pub fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,

@@ -235,7 +235,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         }
         writeln!(
             text,
-            "steps of {} to {} ms resolve vibrations up to {:.0} Hz; {} captures of sticking nodes",
+            "steps of {} to {} ms resolve vibrations up to {:.0} Hz; {} slip-to-stick transitions",
             1e3 * run.shortest_step,
             1e3 * run.longest_step,
             transient.resolved_hz,

@@ -1,4 +1,4 @@
-//! A long run over scenes drawn at random: does every one end as it must?
+//! A long run over random scenarios: does every one end as it must?
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -20,31 +20,31 @@ use crate::print;
 
 #[derive(Args)]
 pub(crate) struct SoakArguments {
-    /// Scenes to run.
+    /// Scenarios to run.
     #[arg(long, value_name = "NUMBER", default_value_t = 1000)]
     scenes: u64,
-    /// Seed of the scenes; scene i of a seed is always the same one.
+    /// Seed of the scenarios; scenario i of a seed is always the same one.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The first scene.
+    /// The first scenario.
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     first: u64,
-    /// Scenes run at the same time.
+    /// Scenarios run at the same time.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     threads: usize,
-    /// Seconds of wall time after which a scene counts as hung.
+    /// Seconds of wall time after which a scenario counts as hung.
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
     limit: f64,
-    /// Run the scenes at this accuracy for 0.4 s, in place of their own accuracy and duration.
+    /// Run the scenarios at this accuracy for 0.4 s, instead of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
     accuracy: Option<String>,
-    /// Run every scene with a finer step as well, and report how many results that contradicts.
+    /// Run every scenario with a finer step as well, and report how many results that contradicts.
     #[arg(long)]
     finer: bool,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
-    /// Print this scene as TOML and run nothing.
+    /// Print this scenario as TOML and run nothing.
     #[arg(long, value_name = "NUMBER")]
     show: Option<u64>,
 }
@@ -97,14 +97,18 @@ pub(crate) fn soak(arguments: &SoakArguments) -> anyhow::Result<()> {
     } else {
         print(report.text(arguments, started.elapsed())?.trim_end());
     }
-    if report.faults.is_empty() { Ok(()) } else { bail!("{} scenes broke the contract", report.faults.len()) }
+    if report.faults.is_empty() {
+        Ok(())
+    } else {
+        bail!("{} scenarios broke the contract", report.faults.len())
+    }
 }
 
 fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
     // A scene that panics is counted; its message goes into the report.
     std::panic::set_hook(Box::new(|_| ()));
     let bar = ProgressBar::new(arguments.scenes);
-    bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} scenes, {elapsed}, {eta} left")?);
+    bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} scenarios, {elapsed}, {eta} left")?);
     let next = AtomicU64::new(arguments.first);
     let end = arguments.first + arguments.scenes;
     let watches: Vec<Watch> = (0..arguments.threads.max(1)).map(|_| Mutex::new(None)).collect();
@@ -167,7 +171,7 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
 
 #[expect(clippy::print_stderr, reason = "the last word of a process that cannot go on")]
 fn bail_out(seed: u64, index: u64) -> ! {
-    eprintln!("scene {index} of seed {seed} hangs and does not react to its cancellation");
+    eprintln!("scenario {index} of seed {seed} hangs and does not react to its cancellation");
     std::process::exit(1)
 }
 
@@ -273,7 +277,7 @@ impl FinerCounts {
 
     fn text(&self, of: &str) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
-        writeln!(text, "the finer step, over the scenes {of}:")?;
+        writeln!(text, "the finer step, over the scenarios {of}:")?;
         writeln!(text, "{:>7} confirms the result", self.agree)?;
         for (scenes, verdict) in [
             (&self.differ, "contradicts the result"),
@@ -293,7 +297,7 @@ impl FinerCounts {
                 let place = measured_depth.map_or_else(String::new, |depth| format!(" at {depth:.2} m"));
                 writeln!(
                     text,
-                    "          scene {index}: {}{place} is {own:.3e}, with the finer step {finer:.3e}: {:.1} % apart, promised are {:.1} %",
+                    "          scenario {index}: {}{place} is {own:.3e}, with the finer step {finer:.3e}: {:.1} % apart, promised are {:.1} %",
                     quantity.words(),
                     100.0 * relative,
                     100.0 * allowed
@@ -373,18 +377,18 @@ impl Report {
     fn text(&self, arguments: &SoakArguments, elapsed: Duration) -> anyhow::Result<String> {
         let mut text = String::new();
         let seconds = elapsed.as_secs_f64();
-        writeln!(text, "{} scenes of seed {} in {seconds:.0} s", arguments.scenes, arguments.seed)?;
+        writeln!(text, "{} scenarios of seed {} in {seconds:.0} s", arguments.scenes, arguments.seed)?;
         writeln!(text, "{:>7} finite, ledger within its bound", self.finite)?;
         let (ledger, index) = self.worst_ledger;
         writeln!(
             text,
-            "        (at worst {ledger:.3} of it, scene {index}; {} above 0.1)",
+            "        (at worst {ledger:.3} of it, scenario {index}; {} above 0.1)",
             self.loose_ledgers
         )?;
         for (cause, (count, examples)) in &self.failed {
             writeln!(text, "{count:>7} failed: {cause}")?;
             for (index, reason) in examples {
-                writeln!(text, "          scene {index}: {reason}")?;
+                writeln!(text, "          scenario {index}: {reason}")?;
             }
         }
         writeln!(text, "{:>7} ledgers out of bound", self.ledgers_out_of_bound)?;
@@ -392,11 +396,11 @@ impl Report {
         writeln!(text, "{:>7} hangs", self.hangs)?;
         if arguments.finer {
             let [tolerance, given] = &self.finer;
-            text += &tolerance.text("that ask for a tolerance on statistics")?;
-            text += &given.text("whose steps are given")?;
+            text += &tolerance.text("with a tolerance on statistics")?;
+            text += &given.text("with given steps")?;
         }
         for (index, reason) in &self.faults {
-            writeln!(text, "  scene {index}: {reason}")?;
+            writeln!(text, "  scenario {index}: {reason}")?;
         }
         Ok(text)
     }

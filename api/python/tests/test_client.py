@@ -192,7 +192,7 @@ def test_an_interrupted_wait_says_how_to_return(caplog: pytest.LogCaptureFixture
         client.sweep("42").wait(progress=interrupt)
     (record,) = (record for record in caplog.records if record.name == "drillsweep")
     assert record.levelno == logging.WARNING, "shown without any configuration of logging"
-    assert "sweep 42 goes on at http://service: client.sweep('42') returns to it" in record.getMessage()
+    assert "sweep 42 continues at http://service: client.sweep('42') returns to it" in record.getMessage()
 
 
 def test_retries_are_logged(caplog: pytest.LogCaptureFixture) -> None:

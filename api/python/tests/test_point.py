@@ -238,7 +238,7 @@ def test_frequencies_that_the_step_does_not_resolve_are_marked(sweep: Sweep) -> 
     axes = plot.spectrum(point, node=49, range_hz=200, peaks=40)
     legend = axes.get_legend()
     assert legend is not None
-    assert legend.get_texts()[0].get_text() == f"beyond what the step resolves (±{resolved:.3g} Hz)"
+    assert legend.get_texts()[0].get_text() == f"not resolved by the steps (beyond ±{resolved:.3g} Hz)"
     assert all(abs(float(text.get_text().removesuffix(" Hz"))) <= resolved + 0.005 for text in axes.texts)
 
 

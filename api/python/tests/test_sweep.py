@@ -15,16 +15,16 @@ import pandas
 import polars
 import pytest
 
+import drillsweep
 from drillsweep import (
     Axis,
-    ChangedMeanwhile,
     Client,
     Conflict,
     IdempotencyKeyReused,
     InvalidRequest,
-    NoAnswer,
     NoResult,
     NotFound,
+    PreconditionFailed,
     Problem,
     Range,
     Sweep,
@@ -148,9 +148,9 @@ def test_a_sweep_is_paused_changed_found_extended_and_resumed(client: Client) ->
     assert sweep.resume().state == "running"
     other = client.sweep(sweep.id)
     other.change(priority=5)
-    with pytest.raises(ChangedMeanwhile, match="revision"):
-        sweep.change(priority=6, only_as_read=True)
-    assert other.change(name="ours", only_as_read=True).priority == 5
+    with pytest.raises(PreconditionFailed, match="revision"):
+        sweep.change(priority=6, if_unchanged=True)
+    assert other.change(name="ours", if_unchanged=True).priority == 5
     with pytest.raises(InvalidRequest, match="in the future"):
         sweep.change(expires=timedelta(days=-1))
     with pytest.raises(Conflict, match="pinned"):
@@ -307,7 +307,7 @@ def test_waiting_outlives_a_server_that_is_killed_and_started_anew(tmp_path: Pat
         address = f"127.0.0.1:{probe.getsockname()[1]}"
     serve = ["serve", "--listen", address, "--data", str(tmp_path)]
     first = Service(*serve)
-    with Client(first.server, patience=60.0) as client:
+    with Client(first.server, retry_timeout=60.0) as client:
         sweep = client.run("paper-200m", set=SHORT)
         states: list[str] = []
         waiting = threading.Thread(target=lambda: states.append(sweep.wait(timeout=120.0, progress=False).state))
@@ -319,9 +319,11 @@ def test_waiting_outlives_a_server_that_is_killed_and_started_anew(tmp_path: Pat
         up.stop()
 
 
-def test_absent_server_is_told_at_once() -> None:
+def test_absent_server_is_reported_at_once() -> None:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-        with Client(f"http://127.0.0.1:{port}") as client, pytest.raises(NoAnswer, match="is the server up"):
-            client.queue()
+        with Client(f"http://127.0.0.1:{port}") as client:
+            with pytest.raises(drillsweep.ConnectionError, match="is the server up") as raised:
+                client.queue()
+            assert isinstance(raised.value, ConnectionError), "the builtin catches it, too"

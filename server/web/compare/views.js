@@ -320,7 +320,7 @@ async function drawSpectra(place, comparison) {
   );
   if (least)
     comparison.says.push(
-      `Shaded: beyond what the time steps${isAlike ? "" : ` of point ${least[0].number}`} resolve, ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`,
+      `Shaded: frequencies that the time steps${isAlike ? "" : ` of point ${least[0].number}`} do not resolve, above ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`,
     );
   const traces = found.map(([point, spectrum]) =>
     spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name),

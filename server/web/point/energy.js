@@ -48,7 +48,7 @@ export function energy(context) {
     const last = columns.time.length - 1;
     fill(
       caption,
-      `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of what it moves: the error of the integration.`,
+      `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of the energy that it counts: the error of the integration.`,
     );
     await Promise.all([drawBars(bars, columns, context.signal), drawCurves(curves, columns, context.signal)]);
   }

@@ -112,7 +112,7 @@ class NodeMotion {
           this.#orbit,
           "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall.",
         ),
-        panel("Full spectrum", this.#spectrum, "Shaded: beyond what the time steps resolve."),
+        panel("Full spectrum", this.#spectrum, "Shaded: frequencies that the time steps do not resolve."),
         h("div", { class: "panel" }, this.#statistics),
         h("div", { class: "panel" }, this.#lines.element),
       ),

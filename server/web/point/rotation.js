@@ -16,7 +16,7 @@ const QUANTITIES = ["rotation_speed", "torque"];
 
 /** Reason for missing lines. */
 export const RECORD_ENDS =
-  "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or what is kept is chosen (recording.outputs).";
+  "Rotation speed and torque at the bit are not in this result: torsion was not solved for, or recording.outputs leaves them out.";
 
 /**
  * One quantity at one end, in served units.
@@ -155,14 +155,14 @@ function saySources(lines) {
 }
 
 /** Sentence about the torque at an end. */
-export const TORQUE = "The torque is what the string carries in its last element at that end.";
+export const TORQUE = "The torque is that of the string's last element at that end.";
 
 /**
  * Sentence about its difference from the torque on bit.
  * @param {any} point
  */
 function sayTorqueOnBit({ scenario }) {
-  return `At the bit it differs from the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by what the friction of the wall and the inertia below the middle of that element take.`;
+  return `At the bit it differs from the torque on bit, which is constant at ${say("torque", scenario.operation.torque_on_bit)}, by the friction of the wall and the inertia below the middle of that element.`;
 }
 
 /** @param {import("./part.js").PointContext} context */
@@ -194,7 +194,7 @@ export function rotation(context) {
         bit: { rotation_speed: LINES[0], torque: LINES[1] },
         top: { rotation_speed: LINES[5], torque: LINES[3] },
       };
-      caption.textContent = `${saySources(lines)} ${has("top") ? "The top turns at the speed that is imposed on it; its torque is what the drive has to hold against. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
+      caption.textContent = `${saySources(lines)} ${has("top") ? "The top turns at the imposed speed; its torque is the torque of the drive. " : "The top was not recorded. "}${TORQUE} ${sayTorqueOnBit(context.point)}`;
       await draw(
         place,
         lines.map(({ end, quantity, time, values }) => ({

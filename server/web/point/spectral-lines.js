@@ -138,7 +138,7 @@ export class SpectralLines {
     fill(
       this.#about,
       found.problem ??
-        `Beside a line stands the mode about the equilibrium that is nearest to it, within half the resolution and 1 % of the frequency; where modes lie so close that one would be as near by chance, only how many there are. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`,
+        `Next to a line stands the nearest mode about the equilibrium, within half the resolution and 1 % of the frequency. If modes are so dense that one would be as near by chance, only their number is shown. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`,
     );
   }
 

@@ -191,7 +191,7 @@ export function largestOf(table) {
  */
 export function describe(table, range) {
   const { windows, resolution, window_s, node, measured_depth, resolved_hz } = table.attributes;
-  return `Node ${node} at ${say("measured_depth", measured_depth)}: ${windows} windows of ${say("time", window_s)}, resolution ${say("frequency", resolution)}. Positive frequencies are forward whirl; the mean position about 0 is left out.${resolved_hz && resolved_hz < range ? ` Dotted: beyond it the time steps do not resolve, ${say("frequency", resolved_hz)}.` : ""}`;
+  return `Node ${node} at ${say("measured_depth", measured_depth)}: ${windows} windows of ${say("time", window_s)}, resolution ${say("frequency", resolution)}. Positive frequencies are forward whirl; the mean position about 0 is left out.${resolved_hz && resolved_hz < range ? ` Dotted: ${say("frequency", resolved_hz)}; the time steps do not resolve higher frequencies.` : ""}`;
 }
 
 /**

@@ -280,7 +280,7 @@ export class StringPlayer {
     });
     fill(
       this.#caption,
-      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole with marks of measured depth beside it, rings are where the string touches the wall; distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to come nearer.`,
+      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
     );
   }
 

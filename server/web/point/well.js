@@ -49,7 +49,7 @@ export function well(context) {
     const values = onNodes(table, name, statics.measured_depth.length);
     fill(
       caption,
-      `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to come nearer.`,
+      `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to zoom.`,
     );
     await draw(
       place,

@@ -338,7 +338,7 @@ class NewSweep {
     hold(isLinked ? null : text);
     this.#beside.textContent = isLinked
       ? ""
-      : `This request is too long for the link of this page, which alone does not hold it. This tab keeps it: it is here again where the page is loaded anew, and after going back or forward. To pass it on, take its lines below.`;
+      : "This request is too long for the link of this page. This tab keeps it, when the page is loaded again and when you go back or forward. To share it, copy its lines below.";
   }
 
   /** Plans the request by a dry run. */

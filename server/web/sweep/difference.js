@@ -142,7 +142,7 @@ class Difference {
     if (!pairs.length) {
       this.#say(
         mine.rows.length && theirs.rows.length
-          ? "No point of the one has the parameters of one of the other. Choose other values of what is held."
+          ? "The sweeps have no point with the same parameters. Choose other values of the held parameters."
           : "One of the two has no results yet.",
       );
       return undefined;

@@ -224,7 +224,7 @@ export class FinerGrid {
         h(
           "fieldset",
           { class: "controls" },
-          h("legend", {}, "Held, where the drawn points differ"),
+          h("legend", {}, "Held parameters that differ between the drawn points"),
           free.map((one) => this.#heldField(one)),
         ),
       sliced.length > 0 &&

@@ -116,7 +116,7 @@ class SweepMap {
     if (isAllFailed) {
       fill(
         this.#empty,
-        "All points of this sweep failed: why is told under ",
+        "All points of this sweep failed. The reasons are under ",
         h("a", { href: link(["sweeps", context.sweep.id], { view: "failures" }) }, "Failures"),
         ".",
       );

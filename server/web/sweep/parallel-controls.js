@@ -71,7 +71,7 @@ export function axisControls(onChange, onMove) {
             type: "number",
             step: "any",
             placeholder: number(axis.ends[index]),
-            "aria-label": `${name}, ${side}${order ? `, stretch ${order + 1}` : ""}`,
+            "aria-label": `${name}, ${side}${order ? `, range ${order + 1}` : ""}`,
             onchange: () => take(axis.name),
           }),
         ),
@@ -87,7 +87,7 @@ export function axisControls(onChange, onMove) {
     });
     fill(
       body,
-      h("p", { class: "small soft" }, "An end that is left empty is that of the axis."),
+      h("p", { class: "small soft" }, "An empty end means the end of the axis."),
       h("div", { class: "ranges" }, parts),
     );
   }

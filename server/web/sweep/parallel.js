@@ -11,7 +11,7 @@ import { followLines, isKept, rangesOf } from "./parallel-lines.js";
 import { preferred, undelayed } from "./part.js";
 
 const HOW =
-  "Drag along an axis, or give the ends of a stretch below, to keep the points that pass there; drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
+  "Drag along an axis, or enter a range below, to filter the points. Drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */

@@ -533,11 +533,11 @@ def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens,
     # What is brushed by the mouse stands in the fields, a second stretch of an axis in those of its own.
     axis = picture.locator(".axis-brush").nth(1)
     drag(page, axis, (0.5, 0.7), (0.5, 0.9))
-    second = page.get_by_label("mud density [kg/m³], from, stretch 2")
+    second = page.get_by_label("mud density [kg/m³], from, range 2")
     expect(second).to_have_value(re.compile(r"^1[56]\d\d"))
     until(page, lambda: page.url.count("mud_density") == 2)
     # Without its numbers an axis keeps all.
-    for name in ("flow rate [m³/s], to", "mud density [kg/m³], from, stretch 2"):
+    for name in ("flow rate [m³/s], to", "mud density [kg/m³], from, range 2"):
         page.get_by_label(name, exact=True).fill("")
         page.get_by_label(name, exact=True).press("Enter")
     expect(second).to_have_count(0)

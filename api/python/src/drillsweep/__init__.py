@@ -7,10 +7,10 @@
     table = sweep.wait().table().to_pandas()
     orbit = sweep.point(1).orbit(depth=57.7, time=(40, 60))
 
-All quantities are in SI units; `Table.units` says which, and `quantity` what a column is, and in which units it is
-shown and read in the oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
+All quantities are in SI units, which `Table.units` lists. `quantity` describes a column, with its units in pictures and
+in the oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
 
-The logger `drillsweep` has submissions, waits and retries, at the level INFO.
+The logger `drillsweep` logs submissions, waits and retries at the level INFO.
 """
 
 from importlib.metadata import version
@@ -19,17 +19,17 @@ from drillsweep.client import Client
 from drillsweep.design import Axis, Design, Range
 from drillsweep.point import Point, PointError
 from drillsweep.problem import (
-    ChangedMeanwhile,
     Conflict,
+    ConnectionError,
     DrillsweepError,
     DrillsweepWarning,
     FieldProblem,
     Forbidden,
     IdempotencyKeyReused,
     InvalidRequest,
-    NoAnswer,
     NoResult,
     NotFound,
+    PreconditionFailed,
     Problem,
     RateLimited,
     Unauthorized,
@@ -47,9 +47,9 @@ __all__ = [
     "Accuracy",
     "Axis",
     "Cache",
-    "ChangedMeanwhile",
     "Client",
     "Conflict",
+    "ConnectionError",
     "Counts",
     "Design",
     "DrillsweepError",
@@ -58,7 +58,6 @@ __all__ = [
     "Forbidden",
     "IdempotencyKeyReused",
     "InvalidRequest",
-    "NoAnswer",
     "NoResult",
     "NotFound",
     "Outputs",
@@ -66,6 +65,7 @@ __all__ = [
     "PlannedPoint",
     "Point",
     "PointError",
+    "PreconditionFailed",
     "Problem",
     "Quantity",
     "Range",

@@ -17,7 +17,7 @@ from httpx_sse import EventSource
 
 from drillsweep.design import Axis, Design, design_to_json
 from drillsweep.point import FailureClass, Point
-from drillsweep.problem import PROBLEM_PREFIX, NoAnswer, Problem, UnsupportedServer, problem, warn
+from drillsweep.problem import PROBLEM_PREFIX, ConnectionError, Problem, UnsupportedServer, problem, warn
 from drillsweep.quantity import Quantity, read_quantities
 from drillsweep.request import Accuracy, Cache, Outputs, request_to_json
 from drillsweep.sweep import Plan, Sweep
@@ -31,7 +31,7 @@ _LOG = logging.getLogger("drillsweep")
 _PAGE = 500
 _FIRST_PAUSE = 0.2
 _LONGEST_PAUSE = 5.0
-_TRY_AGAIN = frozenset({429, 502, 503, 504})
+_RETRYABLE = frozenset({429, 502, 503, 504})
 
 
 class Client:
@@ -43,23 +43,24 @@ class Client:
         *,
         token: str | None = None,
         timeout: float = 60.0,
-        patience: float = 60.0,
+        retry_timeout: float = 60.0,
     ) -> None:
         """Connects to nothing yet; the first request does.
 
         Args:
             server: Address, such as `https://drillsweep.example` or `HOST:PORT` for `http://HOST:PORT`;
                 `DRILLSWEEP_SERVER` unless given, or else port 7340 of this machine.
-            token: Token to show to the server; `DRILLSWEEP_TOKEN` unless given.
-            timeout: Seconds that one answer may take.
-            patience: Seconds for which requests are sent again to a server that has answered before but does not now
-                (being started anew, rate limit). Every request that this client sends can safely be sent again.
+            token: Token of the server; `DRILLSWEEP_TOKEN` unless given.
+            timeout: Longest wait for one answer [s].
+            retry_timeout: Time [s] over which a request is retried, with backoff, if a server that has answered before
+                does not answer (restart) or refuses for a while (rate limit). Every request of this client is
+                idempotent.
 
         Raises:
-            ValueError: The address is none of HTTP.
+            ValueError: The address is not an HTTP address.
         """
         self.server = _base_url(server or os.environ.get("DRILLSWEEP_SERVER") or DEFAULT_SERVER)
-        self.patience = patience
+        self.retry_timeout = retry_timeout
         token = token or os.environ.get("DRILLSWEEP_TOKEN")
         headers = {"authorization": f"Bearer {token}"} if token else {}
         self._timeout = timeout
@@ -104,14 +105,14 @@ class Client:
             design: How points are made from the axes: `grid` (the default), `zip`, `latin_hypercube` or `sobol`; or
                 `list`, with `points`.
             samples: Number of points of a design that draws.
-            seed: What such a design is drawn from; the same seed draws the same points, always.
+            seed: Seed of such a design; the same seed always draws the same points.
             skip: Points at the start of the Sobol sequence to skip, to continue another sweep of the same seed.
             points: The points of the design `list`, each with a value for every parameter; rows of a data frame do
                 (`frame.to_dict("records")`).
             outputs: Outputs that are kept of each point: `"summary"` (its row of the table alone), `"spectra"`,
                 `{"orbits": {"nodes": [{"node": 49}], "window": {"from": 40, "to": 60}, "decimation": 4}}` or `"full"`.
-            verify: How many of the points are run again by the reference, to see how far the accuracy can be trusted: a
-                part of them below 1, such as 0.05, or a number; `Sweep.verification` has what is found.
+            verify: Fraction of the points, such as 0.05, or number of points that run again at the accuracy
+                `reference`, to measure the bias of the requested accuracy; `Sweep.verification` has the results.
             name: A name for people.
             owner: Owner, whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
@@ -125,8 +126,8 @@ class Client:
             ValueError: A number is NaN or infinite; nothing has been sent.
             TypeError: An axis is no list of numbers, or another value cannot be that of its field; nothing has been
                 sent.
-            InvalidRequest: With everything that is wrong with it, by field.
-            NoResult: Under `cache="only"`, where points have not been computed; the text names them.
+            InvalidRequest: The request is not valid; `errors` lists every problem, by field.
+            NoResult: Points have not been computed, and `cache` is `only`; the text names them.
         """
         fields = design_to_json(design, samples, seed, skip, points)
         fields |= {"outputs": outputs, "verify": verify, "name": name, "owner": owner, "priority": priority}
@@ -181,7 +182,7 @@ class Client:
         return plan
 
     def sweep(self, id: str) -> Sweep:
-        """A sweep that is there."""
+        """An existing sweep."""
         return Sweep(self, self.get_json(f"/v1/sweeps/{_segment(id)}"))
 
     def sweeps(self, *, owner: str | None = None, tag: str | None = None, **filters: Any) -> Iterator[Sweep]:
@@ -212,7 +213,7 @@ class Client:
         return dict(self.get_json(f"/v1/scenarios/{_segment(name)}")["scenario"])
 
     def quantities(self) -> dict[str, Quantity]:
-        """The service's vocabulary, by name; `drillsweep.quantity` knows this client's own without asking."""
+        """The service's vocabulary, by name; `drillsweep.quantity` has the client's own, without a request."""
         return read_quantities(self.get_json("/v1/quantities"))
 
     def workers(self) -> list[dict[str, Any]]:
@@ -220,17 +221,17 @@ class Client:
         return list(self.get_json("/v1/workers")["workers"])
 
     def queue(self) -> dict[str, int]:
-        """How much is queued and how much is running."""
+        """Numbers of queued and running work items."""
         return dict(self.get_json("/v1/queue"))
 
     def limits(self) -> dict[str, int]:
-        """The bounds of what the service accepts."""
+        """Limits of the service."""
         return dict(self.get_json("/v1/limits"))
 
     def get_json(
         self, path: str, query: Mapping[str, Any] | None = None, *, read_timeout: float | None = None
     ) -> dict[str, Any]:
-        """Asks for JSON; entries of the query that are None are left out."""
+        """Gets JSON; entries of the query that are None are left out."""
         return dict(self._send("GET", path, query=query, read_timeout=read_timeout).json())
 
     def post_json(
@@ -250,7 +251,7 @@ class Client:
         return dict(self._send("PATCH", path, body=body, headers=headers).json())
 
     def delete_json(self, path: str, query: Mapping[str, Any]) -> dict[str, Any]:
-        """Deletes what is at a path and reads JSON."""
+        """Deletes a resource and reads JSON."""
         return dict(self._send("DELETE", path, query=query).json())
 
     def pages(self, path: str, entries: str, query: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -264,14 +265,14 @@ class Client:
                 return
 
     def save(self, path: str, file: str | Path, query: Mapping[str, Any]) -> Path:
-        """Writes what the service serves to a file, in the format of the file's ending."""
+        """Writes an answer of the service to a file, in the format of the file's ending."""
         file = Path(file)
         response = self._send("GET", path, query={**query, "format": file.suffix.removeprefix(".")})
         file.write_bytes(response.content)
         return file
 
     def download(self, path: str, file: str | Path, query: Mapping[str, Any]) -> Path:
-        """Writes what the service sends to a file, piece by piece; a transfer that breaks off leaves no file."""
+        """Streams an answer of the service to a file; an interrupted transfer leaves no file."""
         self._handshake()
         file = Path(file)
         part = file.with_name(file.name + ".part")
@@ -290,7 +291,7 @@ class Client:
                     sink.write(piece)
             part.replace(file)
         except httpx.TransportError as error:
-            raise NoAnswer(f"the transfer from {self.server} was interrupted: {error}") from error
+            raise ConnectionError(f"the transfer from {self.server} was interrupted: {error}") from error
         finally:
             part.unlink(missing_ok=True)
         return file
@@ -298,12 +299,12 @@ class Client:
     def events(self, path: str, query: Mapping[str, Any] | None = None) -> Iterator[tuple[str, dict[str, Any]]]:
         """Names and data of a stream of server-sent events, until the server has no further events.
 
-        A stream that breaks off, as when the server is started anew, is taken up after the last event that came.
+        After an interruption, such as a restart of the server, the stream resumes after the last event received.
         """
         self._handshake()
         last: str | None = None
         parameters = {name: value for name, value in (query or {}).items() if value is not None}
-        deadline = time.monotonic() + self.patience
+        deadline = time.monotonic() + self.retry_timeout
         while True:
             headers = {"accept": "text/event-stream", **({} if last is None else {"last-event-id": last})}
             try:
@@ -315,13 +316,13 @@ class Client:
                         raise _problem(response)
                     for event in EventSource(response).iter_sse():
                         last = event.id or last
-                        deadline = time.monotonic() + self.patience
+                        deadline = time.monotonic() + self.retry_timeout
                         # A comment that keeps the connection alive comes as an event without data.
                         if event.data:
                             yield event.event, event.json()
             except httpx.TransportError as error:
                 if time.monotonic() > deadline:
-                    raise NoAnswer(f"the events of {self.server} were interrupted: {error}") from error
+                    raise ConnectionError(f"the events of {self.server} were interrupted: {error}") from error
                 _LOG.info("the events of %s were interrupted, and are resumed: %s", path, error)
             time.sleep(_FIRST_PAUSE)
 
@@ -376,10 +377,10 @@ class Client:
         document = _json_object(response)
         if response.is_success:
             self._is_supported = "points_per_sweep" in document
-        elif response.status_code in _TRY_AGAIN:
+        elif response.status_code in _RETRYABLE:
             raise _problem(response)
         else:
-            # A server that wants a token answers by a problem, which the request itself will meet again.
+            # A server that requires a token answers by a problem, which the request itself will meet again.
             kind = str(document.get("type", ""))
             self._is_supported = kind.startswith(PROBLEM_PREFIX) and response.status_code != 404
         if not self._is_supported:
@@ -399,8 +400,8 @@ class Client:
         )
 
     def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
-        """The answer to a request, which is sent again while the server is away."""
-        deadline = time.monotonic() + self.patience
+        """The answer to a request, retried with backoff while the server is unavailable."""
+        deadline = time.monotonic() + self.retry_timeout
         pause = _FIRST_PAUSE
         while True:
             wait = pause
@@ -408,13 +409,13 @@ class Client:
                 response = self._http.request(method, path, **request)
             except httpx.TransportError as error:
                 if not self._has_answered or time.monotonic() + wait > deadline:
-                    raise NoAnswer(f"no answer from {self.server}: {error}; is the server up?") from error
+                    raise ConnectionError(f"no answer from {self.server}: {error}; is the server up?") from error
                 reason = f"no answer: {error}"
             else:
                 self._has_answered = True
                 retry_after = _seconds(response.headers.get("retry-after"))
                 wait = wait if retry_after is None else retry_after
-                if response.status_code not in _TRY_AGAIN or time.monotonic() + wait > deadline:
+                if response.status_code not in _RETRYABLE or time.monotonic() + wait > deadline:
                     return response
                 reason = f"answered {response.status_code}"
             _LOG.info("%s %s of %s: %s; sent again in %.1f s", method, path, self.server, reason, wait)

@@ -1,4 +1,4 @@
-"""Packages that not everybody needs."""
+"""Optional packages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def require(module: str, extra: str) -> Any:
-    """Imports a module, or says how to get it."""
+    """Imports a module; the error names the extra that installs it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#b5568c", "#b57b00", "#56b4e9")
 """Colours of lines, those of the web page: for colour-blind readers too (after Okabe and Ito)."""
 DASHES = ("-", "--", ":", "-.", (0, (8, 4)), (0, (8, 4, 1, 4)))
-"""Dashes that go with them, so that colour is not all that tells lines apart."""
+"""Dashes that go with them, so that lines differ by more than colour."""
 
 
 def orbit(
@@ -70,9 +70,9 @@ def history(
 ) -> list[Axes]:
     """The motion of the recorded nodes, or of one, over time, and below it the rotation at the bit; one axes a panel.
 
-    u and v are in the first panel. Where the string twists, rotation speed and torque follow: those of the bit, out of
-    the history or else the snapshots; where neither has the bit, those of the lowest recorded node under a title that
-    says so. Of a node that is asked for they are its own.
+    u and v are in the first panel. If the string twists, rotation speed and torque follow: those of the requested node,
+    or else of the bit, from the history or the snapshots. If neither has the bit, they are those of the lowest recorded
+    node, and the title names it.
     """
     table = point.history(node=node, depth=depth, nearest=nearest, time=time)
     is_one = node is not None or depth is not None or nearest
@@ -121,8 +121,8 @@ def spectrum(
 ) -> Axes:
     """The full spectrum of a node's orbit, its highest lines labelled; backward whirl is left of zero.
 
-    The line at zero, the mean position, is left out: it would dwarf the others. What lies beyond the frequency that the
-    run's steps resolve is shaded, and no line there is labelled.
+    The line at zero, the mean position, is left out: it would dwarf the others. Frequencies that the run's steps do not
+    resolve are shaded, and lines there have no label.
     """
     np = require("numpy", "plot")
     table = point.spectrum(
@@ -137,7 +137,7 @@ def spectrum(
     resolved = table.attributes.get("resolved_hz")
     last = np.max(np.abs(table["frequency"]))
     if resolved is not None and resolved < last:
-        label = f"beyond what the step resolves (±{resolved:.3g} Hz)"
+        label = f"not resolved by the steps (beyond ±{resolved:.3g} Hz)"
         axes.axvspan(resolved, last, color=PALETTE[1], alpha=0.15, linewidth=0, label=label)
         axes.axvspan(-last, -resolved, color=PALETTE[1], alpha=0.15, linewidth=0)
         axes.legend(fontsize="small")

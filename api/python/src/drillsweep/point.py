@@ -30,7 +30,7 @@ TimeWindow = tuple[float | None, float | None]
 
 @dataclass(frozen=True)
 class PointError:
-    """Why a point has no result."""
+    """Reason for a point without a result."""
 
     kind: str
     """The class of failure: physical, infrastructure, crash, timeout, cancelled or outdated."""
@@ -46,7 +46,7 @@ class Point:
     """One point of a sweep: its state and its result."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
-        """A point as the service showed it, in a list or in full."""
+        """A point as the service returned it, in a list or in full."""
         self._client = client
         self._data = dict(data)
         self._statics: Table | None = None
@@ -73,12 +73,12 @@ class Point:
 
     @property
     def attempts(self) -> int:
-        """How often a worker has started it."""
+        """Number of attempts: how often a worker has started it."""
         return int(self._data["attempts"])
 
     @property
     def error(self) -> PointError | None:
-        """Why it failed, if it did."""
+        """Reason of its failure; None unless it failed."""
         error = self._data.get("error")
         if error is None:
             return None
@@ -96,12 +96,12 @@ class Point:
 
     @property
     def summary(self) -> dict[str, Any] | None:
-        """The scalar results, as in the sweep's table; None where there is no result."""
+        """The scalar results, as in the sweep's table; None without a result."""
         return self._detail("summary")  # type: ignore[no-any-return]
 
     @property
     def provenance(self) -> dict[str, Any] | None:
-        """Which code computed it, where, and at what cost; None where there is no result."""
+        """Code, machine and cost of its computation; None without a result."""
         return self._detail("provenance")  # type: ignore[no-any-return]
 
     @property
@@ -150,9 +150,9 @@ class Point:
             depth: Measured depth [m] of a recorded node, to within half an element.
             nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
-            max_points: At most so many rows.
-            decimation: Which of more rows stay: `stride` (the default), every k-th; `minmax`, those with the extremes
-                of each column.
+            max_points: Largest number of rows.
+            decimation: Choice of the rows of a longer history: `stride` (the default), every k-th; `minmax`, those with
+                the extremes of each column.
         """
         query = {"max_points": max_points, "decimation": decimation}
         return self.view("history", **_node_window(node, depth, nearest, time), **query)
@@ -188,7 +188,7 @@ class Point:
             depth: Measured depth [m] of a recorded node, to within half an element.
             nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
-            max_points: At most so many points; the extremes stay.
+            max_points: Largest number of rows; the extremes stay.
         """
         return self.view("orbit", **_node_window(node, depth, nearest, time), max_points=max_points)
 
@@ -206,7 +206,7 @@ class Point:
         """The full spectrum of a node's orbit: `frequency` (positive is forward whirl), `amplitude`, `peak_to_peak`.
 
         The highest lines are in `attributes["peaks"]`, their frequency and amplitude interpolated between the bins. The
-        run's steps resolve vibrations up to `attributes["resolved_hz"]` [Hz]; each line says whether it `is_resolved`.
+        run's steps resolve vibrations up to `attributes["resolved_hz"]` [Hz]; `is_resolved` of a line compares with it.
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.
@@ -215,7 +215,7 @@ class Point:
             time: Window [s].
             window: Weighting of the samples, `hann` or `rectangular`.
             range_hz: Frequencies from minus to plus this [Hz].
-            peaks: At most so many of the highest peaks are listed.
+            peaks: Largest number of peaks in the list, the highest first.
         """
         query = {"window": window, "range_hz": range_hz, "peaks": peaks}
         return self.view("spectrum", **_node_window(node, depth, nearest, time), **query)
@@ -234,13 +234,13 @@ class Point:
     ) -> Table:
         """The full spectrum of a node's orbit over time: `time`, `frequency` (positive is forward whirl), `amplitude`.
 
-        Window after window, whose middle is `time`; `attributes["windows"]` is how many there are.
+        Window after window, whose middle is `time`; `attributes["windows"]` is their number.
 
         Args:
             node: A recorded node, 1 at the top; either this or `depth`.
             depth: Measured depth [m] of a recorded node, to within half an element.
             nearest: Take the recorded node nearest to `depth`, however far.
-            time: What is looked at [s].
+            time: Window [s] of the whole spectrogram.
             window_s: Length of each window [s].
             step_s: From the beginning of a window to that of the next [s].
             window: Weighting of the samples in each window, `hann` or `rectangular`.
@@ -257,16 +257,16 @@ class Point:
         max_frames: int | None = None,
         fields: Sequence[str] | None = None,
     ) -> Table:
-        """Snapshots of the whole string, where the scenario asks for them (`recording.snapshots`).
+        """Snapshots of the whole string, if the scenario requests them (`recording.snapshots`).
 
         A row a node, from the top, snapshot after snapshot: `time`, `node`, `u`, `v`, `normal_force`, and of axial
-        motion and torsion, where solved for, `w`, `theta_z`, `rotation_speed`, `torque`. A column as an array of
-        snapshots by nodes: `table["u"].reshape(-1, table.attributes["nodes"])`.
+        motion and torsion, if the run solves for them, `w`, `theta_z`, `rotation_speed`, `torque`. A column as an array
+        of snapshots by nodes: `table["u"].reshape(-1, table.attributes["nodes"])`.
 
         Args:
             node: Only this node, 1 at the top.
             time: Window [s].
-            max_frames: At most so many snapshots; every k-th stays.
+            max_frames: Largest number of snapshots; every k-th stays.
             fields: Only these columns.
         """
         names = ",".join(fields) if fields is not None else None
@@ -290,7 +290,7 @@ class Point:
         return self._client.get_json(f"{self.path}/cost")
 
     def plan(self) -> dict[str, Any]:
-        """Plan of its scenario: every effect with why, mesh, steps and processor times."""
+        """Plan of its scenario: every effect with the reason for it, mesh, steps and processor times."""
         return self._client.get_json(f"{self.path}/plan")
 
     def modes(self, *, to_hz: float | None = None) -> dict[str, Any]:
@@ -298,7 +298,7 @@ class Point:
         return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
 
     def view(self, name: str, **query: Any) -> Table:
-        """Any table that the service has of the point; `query` is the service's own."""
+        """Any table of the point; `query` holds parameters of the HTTP API."""
         return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))
 
     def save(self, name: str, file: str | Path, **query: Any) -> Path:

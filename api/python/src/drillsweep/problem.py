@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -11,11 +12,11 @@ PROBLEM_PREFIX = "urn:drillsweep:problem:"
 
 
 class DrillsweepError(Exception):
-    """Everything that this package raises of its own."""
+    """Base class of this package's exceptions."""
 
 
-class NoAnswer(DrillsweepError):
-    """The server cannot be reached."""
+class ConnectionError(DrillsweepError, builtins.ConnectionError):
+    """The server cannot be reached, or a transfer was interrupted; the builtin `ConnectionError` catches it, too."""
 
 
 class UnsupportedServer(DrillsweepError):
@@ -23,15 +24,15 @@ class UnsupportedServer(DrillsweepError):
 
 
 class DrillsweepWarning(UserWarning):
-    """A request that can be simulated but is probably not meant, or an archive that is not complete."""
+    """A valid request with a probable mistake, such as a wrong unit, or an incomplete archive."""
 
 
 @dataclass(frozen=True)
 class FieldProblem:
-    """One thing that is wrong with a request."""
+    """One problem of a request."""
 
     detail: str
-    """Explanation of the problem, and what would be valid."""
+    """Explanation of the problem, and the valid values."""
     pointer: str | None = None
     """JSON Pointer into the request, such as `/axes/flow_rate/values/2`."""
     parameter: str | None = None
@@ -50,7 +51,7 @@ class FieldProblem:
         )
 
     def __str__(self) -> str:
-        """The place and what is wrong there."""
+        """The place and its problem."""
         place = self.pointer or self.parameter
         return f"{place}: {self.detail}" if place else self.detail
 
@@ -62,9 +63,9 @@ def warn(found: Iterable[FieldProblem], stacklevel: int) -> None:
 
 
 class Problem(DrillsweepError):
-    """A request that the service refused, or that it failed at.
+    """An error that the service reported.
 
-    The subclasses are the kinds that a program may want to tell apart; every other kind is a plain Problem.
+    Subclasses are the kinds that a program may handle differently; every other kind is a plain `Problem`.
     """
 
     def __init__(self, status: int, data: Mapping[str, Any], retry_after: float | None = None) -> None:
@@ -84,7 +85,7 @@ class Problem(DrillsweepError):
         self.point_state: str | None = data.get("state")
         """The state of the point, when the problem is that it has no result."""
         self.retry_after = retry_after
-        """Seconds after which another try may do, where the service says so."""
+        """Time [s] after which a retry may succeed, if the service reports one."""
         super().__init__(self._text())
 
     def _text(self) -> str:
@@ -95,7 +96,7 @@ class Problem(DrillsweepError):
 
 
 class InvalidRequest(Problem):
-    """The request or a parameter of it is not valid; `errors` says which fields and what would be."""
+    """The request or one of its parameters is not valid; `errors` has the fields, with valid values."""
 
 
 class NotFound(Problem):
@@ -103,15 +104,15 @@ class NotFound(Problem):
 
 
 class NoResult(Problem):
-    """The point has no result, or not yet; `point_state` says where it stands."""
+    """The point has no result, or not yet; `point_state` is its state."""
 
 
 class Conflict(Problem):
     """The sweep's state does not allow the operation."""
 
 
-class ChangedMeanwhile(Conflict):
-    """Somebody else has changed the sweep since it was read."""
+class PreconditionFailed(Conflict):
+    """The sweep has changed since it was read (HTTP 412)."""
 
 
 class IdempotencyKeyReused(Conflict):
@@ -119,15 +120,15 @@ class IdempotencyKeyReused(Conflict):
 
 
 class Unauthorized(Problem):
-    """The service wants a token, or the one that it got is not valid."""
+    """The service requires a token, or the token is not valid."""
 
 
 class Forbidden(Problem):
-    """The token does not allow this."""
+    """The token lacks the right to the request."""
 
 
 class RateLimited(Problem):
-    """Too much was asked for; `retry_after` says when to try again."""
+    """Too many requests; `retry_after` is the time until a retry may succeed."""
 
 
 class Unavailable(Problem):
@@ -143,7 +144,7 @@ _BY_KIND: dict[str, type[Problem]] = {
     "not-found": NotFound,
     "no-such-table": NotFound,
     "no-result": NoResult,
-    "precondition-failed": ChangedMeanwhile,
+    "precondition-failed": PreconditionFailed,
     "idempotency-key-reused": IdempotencyKeyReused,
 }
 

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 _WIDTH = 30
 
 
-def is_watched(stream: TextIO) -> bool:
-    """Whether somebody looks at a bar on this stream: a terminal or a notebook."""
+def is_interactive(stream: TextIO) -> bool:
+    """Whether a stream can show a bar: a terminal or a notebook."""
     return stream.isatty() or "ipykernel" in sys.modules
 
 
 class ProgressBar:
-    """Shows a sweep in one line that is written over and over."""
+    """Shows a sweep in one line, rewritten with each change."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
         """A bar on a stream; standard error unless given."""

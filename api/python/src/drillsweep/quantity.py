@@ -17,12 +17,12 @@ _PLACE = re.compile(r"(?:_\d+(?:_\d+)?m|_\d+)?(?:_w\d+)?$")
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit beside the one in which a quantity is served."""
+    """A unit other than the one in which a quantity is served."""
 
     symbol: str
-    """How it is written, such as `mm`."""
+    """Its notation, such as `mm`."""
     size: float
-    """How many of the served unit one of these is: 0.0254 for an inch of a length in metres."""
+    """Size in the served unit: 0.0254 for an inch of a length in metres."""
 
     def of(self, value: Any) -> Any:
         """A value, or an array of values, in this unit."""

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, SupportsFloat
 from drillsweep.design import Axis, Design, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
 from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
-from drillsweep.progress import ProgressBar, is_watched
+from drillsweep.progress import ProgressBar, is_interactive
 from drillsweep.table import Table
 from drillsweep.values import texts, to_json
 
@@ -38,7 +38,7 @@ class Unchanged(Enum):
 
 
 UNCHANGED = Unchanged.UNCHANGED
-"""Value of fields that a change leaves as they are, where None means something else."""
+"""Value of fields that a change leaves as they are, because None is a value of its own."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class PlannedPoint:
 
 @dataclass(frozen=True)
 class Plan:
-    """Preview of a request, without storing anything."""
+    """Preview of a request; nothing is stored."""
 
     total: int
     """Number of points."""
@@ -73,7 +73,7 @@ class Plan:
     points: tuple[PlannedPoint, ...]
     """The points, in order."""
     warnings: tuple[FieldProblem, ...]
-    """Warnings about what can be simulated but is probably not meant."""
+    """Warnings about probable mistakes in a valid request."""
     data: dict[str, Any]
     """The service's whole answer."""
 
@@ -86,10 +86,10 @@ class Plan:
 
 
 class Sweep:
-    """A sweep on the server. What it says of itself is as of its last answer; `refresh` and `wait` update it."""
+    """A sweep on the server, in the state of the last answer; `refresh` and `wait` update it."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
-        """A sweep as the service showed it."""
+        """A sweep as the service returned it."""
         self._client = client
         self._data = dict(data)
 
@@ -141,7 +141,7 @@ class Sweep:
 
     @property
     def verified(self) -> Counts | None:
-        """The reference runs that verify some of its points, by state; None where none was asked for."""
+        """The reference runs that verify some of its points, by state; None if none was requested."""
         verification = self._data.get("verification")
         return None if verification is None else _counts(verification["counts"])
 
@@ -152,7 +152,7 @@ class Sweep:
 
     @property
     def waiting_for(self) -> str | None:
-        """Why its queued points do not begin, where no worker of their version of the physics is there; else None."""
+        """The reason if its queued points cannot start, such as no worker of their physics version; else None."""
         waiting = self._data.get("waiting_for")
         return None if waiting is None else str(waiting["reason"])
 
@@ -174,7 +174,7 @@ class Sweep:
 
     @property
     def warnings(self) -> tuple[FieldProblem, ...]:
-        """Warnings about what can be simulated but is probably not meant; in the answer to a submission only."""
+        """Warnings about probable mistakes in a valid request; in the answer to a submission only."""
         return tuple(FieldProblem.from_json(warning) for warning in self._data.get("warnings", ()))
 
     @property
@@ -201,20 +201,20 @@ class Sweep:
     ) -> Sweep:
         """Waits until every point is final, and every reference run that verifies one, and returns the sweep.
 
-        A server that is away for a while, as when it is started anew, is waited for (`Client.patience`). Failed points
-        do not raise: `counts.failed` and `failures` tell. An interrupt (Ctrl-C) ends the wait alone: the sweep goes on
-        at the server, and a warning in the log `drillsweep` says how to return to it.
+        Requests to a server that is unavailable, for example during a restart, are retried (`Client.retry_timeout`).
+        Failed points do not raise: see `counts.failed` and `failures`. An interrupt (Ctrl-C) ends only the wait: the
+        sweep continues on the server, and a warning in the log `drillsweep` shows how to return to it.
 
         Args:
             timeout: Longest wait [s]; None is without end.
-            progress: True shows a bar, False none, a function is called after every change; None shows a bar to those
-                who see one, on a terminal or in a notebook.
+            progress: True shows a bar, False none, a function is called after every change; None shows a bar
+                on a terminal or in a notebook.
 
         Raises:
             TimeoutError: When `timeout` is over.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
-        bar = ProgressBar() if progress is True or (progress is None and is_watched(sys.stderr)) else None
+        bar = ProgressBar() if progress is True or (progress is None and is_interactive(sys.stderr)) else None
         show = bar.show if bar else progress if callable(progress) else _nothing
         try:
             _LOG.info("waiting for sweep %s", self.id)
@@ -232,7 +232,7 @@ class Sweep:
             if bar:
                 bar.close()
             if not self.is_finished:
-                text = "sweep %s goes on at %s: client.sweep(%r) returns to it, its cancel() ends it"
+                text = "sweep %s continues at %s: client.sweep(%r) returns to it, its cancel() ends it"
                 _LOG.warning(text, self.id, self._client.server, self.id)
             raise
         finally:
@@ -258,7 +258,7 @@ class Sweep:
             yield Point(self._client, data)
 
     def failures(self) -> list[Point]:
-        """The points that failed; `Point.error` says why."""
+        """The points that failed; `Point.error` has the reason."""
         return list(self.points("failed"))
 
     def table(self) -> Table:
@@ -270,8 +270,8 @@ class Sweep:
 
         One row a verified point: for each statistic, such as `orbit_radius_rms_49`, its value, that of the reference
         (`reference_orbit_radius_rms_49`) and the bias (`bias_orbit_radius_rms_49`), relative to the reference or, of
-        frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and what the accuracy
-        promises; `attributes["warnings"]` shows where that is exceeded.
+        frequencies, in Hz. `attributes["statistics"]` has mean and largest bias of each, and the promise of the
+        accuracy; `attributes["warnings"]` lists the statistics that exceed it.
         """
         return Table.from_json(self._client.get_json(f"{self.path}/verification"))
 
@@ -286,8 +286,8 @@ class Sweep:
             file: The archive.
             tables: Names of the tables of each point, such as `["profile", "history"]`; None means all.
 
-        Tables that the service has lost, or that have expired, are not in it. A warning says so, and `manifest.json`
-        in the archive which they are and why.
+        The archive lacks tables that the service has lost or that have expired. A warning reports them, and
+        `manifest.json` in the archive lists them with the reason.
         """
         names = None if tables is None else ",".join(tables)
         archive = self._client.download(f"{self.path}/export", file, {"artifacts": names})
@@ -302,19 +302,19 @@ class Sweep:
 
     def cancel(self) -> Sweep:
         """Cancels it: queued points at once, running ones within a heartbeat of their worker."""
-        return self._ask("cancel")
+        return self._act("cancel")
 
     def retry(self) -> Sweep:
         """Queues its failed and cancelled points again."""
-        return self._ask("retry")
+        return self._act("retry")
 
     def pause(self) -> Sweep:
-        """Pauses it: queued points are not started, but for those that another sweep wants; running ones continue."""
-        return self._ask("pause")
+        """Pauses it: queued points start only if another sweep has them, too; running ones continue."""
+        return self._act("pause")
 
     def resume(self) -> Sweep:
         """Resumes it after a pause: its queued points may be started again."""
-        return self._ask("resume")
+        return self._act("resume")
 
     def change(
         self,
@@ -324,9 +324,9 @@ class Sweep:
         priority: int | Unchanged = UNCHANGED,
         is_pinned: bool | Unchanged = UNCHANGED,
         expires: datetime | timedelta | Unchanged | None = UNCHANGED,
-        only_as_read: bool = False,
+        if_unchanged: bool = False,
     ) -> Sweep:
-        """Changes what is given, and leaves the rest.
+        """Changes the given fields, and leaves the rest.
 
         Args:
             name: A name for people; None takes it away.
@@ -335,8 +335,8 @@ class Sweep:
             is_pinned: Whether it, and all that belongs to it, is kept whatever its age.
             expires: When it is to be deleted, once all its points are final and unless it is pinned: a time, a span
                 from now, or None for never. A time without a zone is this machine's.
-            only_as_read: Whether to raise `ChangedMeanwhile`, and change nothing, where somebody else has changed the
-                sweep since this object read it. That its points have gone on does not count.
+            if_unchanged: Raise `PreconditionFailed`, and change nothing, if the sweep has changed since this object
+                read it (`If-Match` with its ETag). Progress of its points is not a change.
         """
         if isinstance(expires, timedelta):
             expires = datetime.now(timezone.utc) + expires
@@ -352,12 +352,12 @@ class Sweep:
             "expires": moment,
         }
         body = {field: value for field, value in changes.items() if not isinstance(value, Unchanged)}
-        headers = {"if-match": f'"{self._data["revision"]}"'} if only_as_read else None
+        headers = {"if-match": f'"{self._data["revision"]}"'} if if_unchanged else None
         self._data = self._client.patch_json(self.path, body, headers)
         return self
 
     def delete(self, *, dry_run: bool = False) -> dict[str, Any]:
-        """Deletes it, and tells how many points and results went with it; a dry run only tells.
+        """Deletes it, and returns how many points and results were deleted; a dry run only counts them.
 
         Raises:
             Conflict: It is pinned, or has points that are not final.
@@ -384,7 +384,7 @@ class Sweep:
         warn(self.warnings, stacklevel=2)
         return self
 
-    def _ask(self, verb: str) -> Sweep:
+    def _act(self, verb: str) -> Sweep:
         self._data = self._client.post_json(f"{self.path}/{verb}", {})
         return self
 

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 class Table(Mapping[str, "numpy.ndarray[Any, Any]"]):
     """A table of the service.
 
-    As a mapping it gives the columns as numpy arrays (`orbit["u"]`); `columns` has them as plain lists, for which
-    numpy is not needed.
+    As a mapping it has the columns as numpy arrays (`orbit["u"]`); `columns` has them as plain lists, without numpy.
     """
 
     columns: dict[str, list[Any]]
@@ -62,9 +61,9 @@ class Table(Mapping[str, "numpy.ndarray[Any, Any]"]):
 
     @property
     def unsettled(self) -> numpy.ndarray[Any, Any]:
-        """Which rows of a sweep's table have not settled or have a mode that still grows.
+        """True for the rows of a sweep's table that have not settled or have a mode that still grows.
 
-        Their statistics may be those of the start alone, so that they are no values for a map or a fit.
+        Their statistics may be those of the start alone: leave them out of maps and fits.
         """
         np = require("numpy", "numpy")
         regimes = self.columns.get("motion_regime", [None] * self.rows)

@@ -9,9 +9,8 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// Permitted dependencies among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
-    ("drillsweep-fft", &[]),
     ("drillsweep-scenario", &[]),
-    ("drillsweep-sim", &["drillsweep-fft", "drillsweep-scenario"]),
+    ("drillsweep-sim", &["drillsweep-scenario"]),
     ("drillsweep-table", &[]),
     ("drillsweep-api", &["drillsweep-scenario", "drillsweep-sim", "drillsweep-table"]),
     ("drillsweep-chart", &["drillsweep-api", "drillsweep-scenario", "drillsweep-table"]),
@@ -45,7 +44,7 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),
     ("resvg", &["drillsweep-chart"]),
-    ("rustfft", &["drillsweep-fft"]),
+    ("rustfft", &["drillsweep-sim"]),
     ("skrifa", &["drillsweep-chart"]),
     ("notosans", &["drillsweep-chart"]),
 ];

@@ -4,6 +4,7 @@
 //! v) is forward whirl and stands at positive frequencies, turning against it is backward whirl.
 
 mod course;
+mod fft;
 mod orbit;
 mod spectrum;
 mod window;

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
+use super::fft;
 use super::window::Window;
 
 /// The full spectrum of an orbit: one amplitude for every frequency, negative for backward whirl.
@@ -71,7 +72,7 @@ pub fn full_spectrum(u: &[f64], v: &[f64], rate_hz: f64, window: Window) -> Full
         .enumerate()
         .map(|(n, (u, v))| Complex::new(*u, *v) * window.weight(n, count))
         .collect();
-    drillsweep_fft::forward(&mut bins);
+    fft::forward(&mut bins);
     // The second half of the bins are the negative frequencies.
     let negative = count / 2;
     bins.rotate_right(negative);

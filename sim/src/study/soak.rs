@@ -8,7 +8,7 @@ use drillsweep_scenario::{
     Accuracy, AccuracyPreset, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge,
     Integrator, Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording,
     RegimeChoice, Scenario, Section, SectionKind, Statics, SurveyStation, Switch, TimeStepping, ToolJoint,
-    TopCondition, UnbalanceMass, WallLaw, Well,
+    TopCondition, UnbalanceMass, WallLaw, Well, preset,
 };
 
 use crate::admission::validate;
@@ -175,6 +175,7 @@ fn transient_cause(error: &TransientError) -> &'static str {
 /// Scene `index` of a seed.
 pub fn scene(seed: u64, index: u64) -> Scenario {
     let mut draw = Draw::new(seed, index);
+    let base = preset("paper-200m").expect("the preset of the paper is part of the program");
     let hole_diameter = draw.log(0.1, 0.45);
     let string = draw_string(&mut draw, hole_diameter);
     let length = total_length(&string);
@@ -182,7 +183,7 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
     let mut scenario = Scenario {
         name: format!("soak {seed}/{index}"),
         well: Well { hole_diameter, survey: draw_survey(&mut draw, length) },
-        operation: draw_operation(&mut draw),
+        operation: draw_operation(&mut draw, base.operation),
         mud: draw_mud(&mut draw),
         contact: draw_contact(&mut draw),
         statics: Statics::default(),
@@ -203,9 +204,9 @@ pub fn scene(seed: u64, index: u64) -> Scenario {
         },
         accuracy: Accuracy::Explicit(accuracy),
         effects: draw_effects(&mut draw),
-        ensemble: 1,
-        cost_study: None,
         string,
+        // The rest as in the base case: one run of one point.
+        ..base
     };
     // A gauge may not be wider than what the body leaves of the hole where it stands.
     if let Ok(mesh) = StringMesh::new(&scenario) {
@@ -305,7 +306,8 @@ fn draw_survey(draw: &mut Draw, length: f64) -> Vec<SurveyStation> {
     }
 }
 
-fn draw_operation(draw: &mut Draw) -> Operation {
+/// Draws rotation and loads; other fields are those of `operation`.
+fn draw_operation(draw: &mut Draw, mut operation: Operation) -> Operation {
     let speed = match draw.below(10) {
         0 => 0.0,
         1 => draw.log(1e-3, 1.0),
@@ -313,12 +315,11 @@ fn draw_operation(draw: &mut Draw) -> Operation {
     };
     let sense = if draw.chance(0.1) { -1.0 } else { 1.0 };
     let torque = draw.or_zero(0.2, 10.0, 3e4);
-    Operation {
-        rotation_speed_rpm: sense * speed,
-        weight_on_bit: -draw.or_zero(0.2, 1e2, 5e5),
-        torque_on_bit: -sense * torque,
-        top: if draw.chance(0.2) { TopCondition::Pinned } else { TopCondition::Clamped },
-    }
+    operation.rotation_speed_rpm = sense * speed;
+    operation.weight_on_bit = -draw.or_zero(0.2, 1e2, 5e5);
+    operation.torque_on_bit = -sense * torque;
+    operation.top = if draw.chance(0.2) { TopCondition::Pinned } else { TopCondition::Clamped };
+    operation
 }
 
 fn draw_mud(draw: &mut Draw) -> Option<Mud> {

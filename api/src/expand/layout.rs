@@ -223,7 +223,7 @@ pub(super) fn axis_pointer(name: &AxisName) -> String {
 mod tests {
     use super::*;
     use crate::expand::tests::expand;
-    use crate::expand::tests::{expansion, pointers, request};
+    use crate::expand::tests::{expansion, pointers, problems, request};
 
     #[test]
     fn the_first_axis_varies_slowest() {
@@ -332,6 +332,32 @@ mod tests {
         let rest = expansion(body("sobol", 6, Some(4))).points;
         let keys = |points: &[SweepPoint]| points.iter().map(|point| point.key).collect::<Vec<_>>();
         assert_eq!(keys(&whole[4..]), keys(&rest));
+    }
+
+    #[test]
+    fn problems_of_listed_points_point_to_their_members() {
+        let of =
+            |point: Value| problems(json!({"preset": "paper-200m", "design": "list", "points": [point]}));
+        let unknown = of(json!({"mud.flowrate": 0.01}));
+        assert_eq!(unknown.len(), 1, "{unknown:?}");
+        // A field that does not exist has no value.
+        assert_eq!((unknown[0].0.as_str(), &unknown[0].1), ("/points/0/mud.flowrate", &None));
+        let half = of(json!({"ensemble": 7.5}));
+        assert_eq!((half[0].0.as_str(), &half[0].1), ("/points/0/ensemble", &Some(json!(7.5))), "{half:?}");
+        let twice = of(json!({"flow_rate": 0.01, "mud.flow_rate": 0.02}));
+        assert_eq!(twice[0].0, "/points/0/mud.flow_rate", "{twice:?}");
+    }
+
+    #[test]
+    fn a_sobol_sequence_ends() {
+        let problem = |design: &str| {
+            let body = json!({"preset": "paper-200m", "design": design, "samples": 2, "skip": u32::MAX, "axes": {
+                "flow_rate": {"from": 0.01, "to": 0.06}
+            }});
+            problems(body).into_iter().find(|(pointer, ..)| pointer == "/skip").unwrap().2
+        };
+        assert!(problem("sobol").contains("below 4294967296"), "{}", problem("sobol"));
+        assert!(problem("latin_hypercube").contains("`sobol` only"));
     }
 
     #[test]

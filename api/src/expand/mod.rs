@@ -125,4 +125,33 @@ pub(crate) mod tests {
         assert_eq!(expansion.points[0].ordinal, 1);
         assert_eq!(expansion.scenario(&expansion.points[0]).duration, 65.0);
     }
+
+    #[test]
+    fn added_points_have_the_parameter_names_of_their_sweep() {
+        let body = |name: &str| {
+            let axes = json!({"contact.stiffness": {"values": [1e6]}, name: {"values": [0.03]}});
+            request(json!({"preset": "paper-200m", "axes": axes}))
+        };
+        let added = super::expand_added(&body("mud.flow_rate"), &body("flow_rate"), UNINTERRUPTED).unwrap();
+        let names: Vec<&str> = added.axes.iter().map(crate::AxisName::as_str).collect();
+        assert_eq!(names, ["contact.stiffness", "flow_rate"]);
+        // What is not swept has its name, too, once.
+        let parameters: Vec<(String, f64)> = added.parameters(&added.points[0]).into_iter().collect();
+        let density = added.base.mud.unwrap().density;
+        let wanted = [("contact.stiffness", 1e6), ("flow_rate", 0.03), ("mud_density", density)];
+        assert_eq!(parameters, wanted.map(|(name, value)| (name.to_owned(), value)));
+    }
+
+    #[test]
+    fn texts_have_a_length_and_no_control_characters() {
+        let of =
+            |name: &str, owner: &str| pointers(json!({"preset": "paper-200m", "name": name, "owner": owner}));
+        assert_eq!(of("", "two\nlines"), ["/name", "/owner"]);
+        assert_eq!(of(&"n".repeat(1000), "\u{7}"), ["/name", "/owner"]);
+        assert!(
+            super::expand(&request(json!({"preset": "paper-200m", "name": "a b"})), UNINTERRUPTED).is_ok()
+        );
+        let patch = |name: &str| super::check_patch(&serde_json::from_value(json!({"name": name})).unwrap());
+        assert!(patch("tab\t").is_err() && patch("a b").is_ok());
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::Poll;
 
 use drillsweep_store::{
-    Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, patiently,
+    Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, with_backoff,
 };
 use sqlx::AssertSqlSafe;
 use sqlx::postgres::PgPool;
@@ -658,7 +658,7 @@ async fn a_server_that_can_make_no_process_for_a_connection_is_asked_again() {
     });
     let mut config = engine.config(Role::Server, 0);
     config.database = url.parse().unwrap();
-    let store = patiently(|| Store::open(&config)).await.unwrap();
+    let store = with_backoff(|| Store::open(&config)).await.unwrap();
     assert_eq!(turned_away.load(Ordering::Relaxed), 2);
     submit(&store, &sweep("s", [1])).await;
     store.close().await;

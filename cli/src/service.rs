@@ -15,7 +15,7 @@ use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
 use drillsweep_server::{
-    Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, Retaining,
+    Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, RetentionConfig,
 };
 use drillsweep_store::{Role, Store, StoreConfig, with_backoff};
 use drillsweep_worker::{WorkerConfig, host_name};
@@ -358,7 +358,7 @@ impl Service {
                 per_address: arguments.connections_per_address,
                 ..ConnectionLimits::default()
             },
-            retention: Retaining {
+            retention: RetentionConfig {
                 policy: arguments.retention.policy(),
                 interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
             },

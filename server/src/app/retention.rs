@@ -10,14 +10,14 @@ const DAY: Duration = Duration::from_secs(86_400);
 
 /// How long data are kept, and who sees to that.
 #[derive(Debug, Clone)]
-pub struct Retaining {
+pub struct RetentionConfig {
     /// Retention policy: what is kept for how long.
     pub policy: RetentionPolicy,
     /// Time from one collection to the next; none where the service does not collect.
     pub interval: Option<Duration>,
 }
 
-impl Default for Retaining {
+impl Default for RetentionConfig {
     /// Recordings (histories, from which orbits and spectra are cut, and snapshots) are kept for 30 days, other tables for a year, events
     /// for 30 days.
     fn default() -> Self {
@@ -27,11 +27,11 @@ impl Default for Retaining {
             events: 30 * DAY,
             blob_grace: DAY,
         };
-        Retaining { policy, interval: None }
+        RetentionConfig { policy, interval: None }
     }
 }
 
-impl Retaining {
+impl RetentionConfig {
     /// An age for every table that is a recording.
     pub fn of_recordings(age: Duration) -> BTreeMap<String, Duration> {
         [&HISTORY, &SNAPSHOTS].map(|layout| (layout.name.to_owned(), age)).into()

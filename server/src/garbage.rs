@@ -1,4 +1,4 @@
-//! The task that deletes what need not be kept.
+//! Task of periodic garbage collection.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ const LOOK: Duration = Duration::from_secs(60);
 
 /// Deletes what need not be kept, time after time, until the service stops. The time is counted from the last collection, whoever made
 /// it; without one, from the service's first start, so that nothing is deleted before an operator has read what would be.
-pub(crate) async fn collect(mut app: App) {
+pub(crate) async fn collect_garbage(mut app: App) {
     let Some(interval) = app.config.retention.interval else { return };
     tracing::info!(
         every_hours = interval.as_secs_f64() / 3600.0,

@@ -23,7 +23,8 @@ use tracing::Instrument as _;
 
 use crate::artifact::EncodedArtifact;
 use crate::calibration::calibrate;
-use crate::compute::{Computation, ComputeError, compute_from, simulated_time_total};
+use crate::compute::{Computation, compute_from, simulated_time_total};
+use crate::error::ComputeError;
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 use crate::memory::Memory;
 use crate::metrics::{Metrics, Outcome};

@@ -27,7 +27,12 @@ pub enum StoreError {
     Untrusted(rustls::Error),
     /// The schema could not be brought up to date.
     #[error("database schema: {0}")]
-    Migration(#[from] MigrateError),
+    Migration(#[source] MigrateError),
+    /// Another version of this program made the schema: its migrations are not those of this one.
+    #[error(
+        "database schema: another version of drillsweep made it, and this one does not read it ({0}); start with a new database, or use that version"
+    )]
+    OtherSchema(#[source] MigrateError),
     /// The object store failed.
     #[error("object store: {0}")]
     Blob(#[source] object_store::Error),
@@ -166,6 +171,17 @@ impl StoreError {
             }
             StoreError::Arriving | StoreError::TakenAway => true,
             _ => false,
+        }
+    }
+}
+
+impl From<MigrateError> for StoreError {
+    fn from(error: MigrateError) -> Self {
+        match error {
+            MigrateError::VersionMismatch(_) | MigrateError::VersionMissing(_) => {
+                StoreError::OtherSchema(error)
+            }
+            error => StoreError::Migration(error),
         }
     }
 }

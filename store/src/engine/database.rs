@@ -2,7 +2,7 @@
 //!
 //! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
 //! failure) runs beside others of its kind, and what follows from it for others (the turn of its owner, the sweeps that have it) is noted
-//! with it and applied in batches (migrations/postgres/0004_transitions.sql). All that changes several (submitting, cancelling, pausing,
+//! with it and applied in batches (migrations/postgres/0001_schema.sql). All that changes several (submitting, cancelling, pausing,
 //! collecting garbage) runs alone, as everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold
 //! shared. Triggers take the shared lock and note the changes, so that no statement can forget them.
 //!

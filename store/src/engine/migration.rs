@@ -10,25 +10,9 @@ use crate::error::Result;
 /// Version and description of a migration, which are its file's name, and its text.
 type File = (i64, &'static str, &'static str);
 
-const SQLITE: &[File] = &[
-    (1, "schema", include_str!("../../../migrations/sqlite/0001_schema.sql")),
-    (2, "worker note", include_str!("../../../migrations/sqlite/0002_worker_note.sql")),
-    (3, "uploads", include_str!("../../../migrations/sqlite/0003_uploads.sql")),
-    (4, "sessions", include_str!("../../../migrations/sqlite/0004_sessions.sql")),
-];
+const SQLITE: &[File] = &[(1, "schema", include_str!("../../../migrations/sqlite/0001_schema.sql"))];
 
-const POSTGRES: &[File] = &[
-    (1, "schema", include_str!("../../../migrations/postgres/0001_schema.sql")),
-    (2, "queues", include_str!("../../../migrations/postgres/0002_queues.sql")),
-    (3, "sessions", include_str!("../../../migrations/postgres/0003_sessions.sql")),
-    (4, "transitions", include_str!("../../../migrations/postgres/0004_transitions.sql")),
-    (5, "references", include_str!("../../../migrations/postgres/0005_references.sql")),
-    (6, "finish and claim", include_str!("../../../migrations/postgres/0006_finish_and_claim.sql")),
-    (7, "looks", include_str!("../../../migrations/postgres/0007_looks.sql")),
-    (8, "stages", include_str!("../../../migrations/postgres/0008_stages.sql")),
-    (9, "longer batches", include_str!("../../../migrations/postgres/0009_longer_batches.sql")),
-    (10, "reservations", include_str!("../../../migrations/postgres/0010_reservations.sql")),
-];
+const POSTGRES: &[File] = &[(1, "schema", include_str!("../../../migrations/postgres/0001_schema.sql"))];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A
 /// database that has had one of another text, or one that is not here, is refused.

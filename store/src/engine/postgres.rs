@@ -1,7 +1,7 @@
 //! PostgreSQL: a team's engine, for many machines.
 //!
 //! Writers that change the state of work items only note the changes; what follows from them for others is applied in batches
-//! (migrations/postgres/0004_transitions.sql). Everybody who has committed such a change calls `apply_transitions`, which leaves it to
+//! (migrations/postgres/0001_schema.sql). Everybody who has committed such a change calls `apply_transitions`, which leaves it to
 //! whoever is applying others at that moment, and who does so calls it again until nothing is left: so all changes are applied once all
 //! those who have made them have returned. The procedure `finish_and_claim` does the same by itself, after its commit. Readers of what
 //! follows from changes call it now and then as well, since a process may have died in between.

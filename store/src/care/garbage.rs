@@ -114,9 +114,12 @@ impl Store {
             if is_dry_run {
                 return self.collect(policy, true).await;
             }
-            query(sql::collection::BEGIN).scalars::<i64>(&self.database).await?;
+            query(sql::garbage::BEGIN_COLLECTION).scalars::<i64>(&self.database).await?;
             let garbage = self.collect(policy, false).await?;
-            query(sql::collection::END).bind(garbage.to_json().to_string()).execute(&self.database).await?;
+            query(sql::garbage::END_COLLECTION)
+                .bind(garbage.to_json().to_string())
+                .execute(&self.database)
+                .await?;
             Ok(garbage)
         })
     }
@@ -127,7 +130,7 @@ impl Store {
     /// When the database fails.
     pub async fn last_collection(&self) -> Result<Option<Collection>> {
         let last: Option<(i64, Option<i64>, Option<String>)> =
-            query(sql::collection::LAST).first(&self.database).await?;
+            query(sql::garbage::LAST_COLLECTION).first(&self.database).await?;
         Ok(last.map(|(started, ended, deleted_json)| Collection { started, ended, deleted_json }))
     }
 
@@ -145,7 +148,7 @@ impl Store {
         tx = self.go_on(tx, is_dry_run).await?;
         garbage.events = delete_old_rows(&mut tx, policy, now).await?;
         let named: HashSet<String> =
-            query(sql::retention::BLOBS_IN_USE).scalars(&mut tx).await?.into_iter().collect();
+            query(sql::garbage::BLOBS_IN_USE).scalars(&mut tx).await?.into_iter().collect();
         if is_dry_run {
             tx.rollback().await?;
         } else {
@@ -171,7 +174,7 @@ impl Store {
         }
         if !is_dry_run {
             // Pages that were freed go back to the file system with the next checkpoint of the log.
-            query(sql::retention::TRUNCATE_LOG).scalars::<i64>(&self.database).await?;
+            query(sql::garbage::TRUNCATE_LOG).scalars::<i64>(&self.database).await?;
         }
         Ok(garbage)
     }
@@ -198,12 +201,12 @@ impl Store {
             };
             let is_wanted = match object.is_upload() {
                 true => unreserved(&blob).scalars::<String>(&mut tx).await?.is_empty(),
-                false => query(sql::retention::IS_BLOB_IN_USE).bind(&blob).scalar(&mut tx).await?,
+                false => query(sql::garbage::IS_BLOB_IN_USE).bind(&blob).scalar(&mut tx).await?,
             };
             if is_wanted {
                 continue;
             }
-            let begin = query(sql::retention::BEGIN_REMOVAL).bind(&blob).bind(REMOVAL_MS);
+            let begin = query(sql::garbage::BEGIN_REMOVAL).bind(&blob).bind(REMOVAL_MS);
             // Where another collector deletes it, somebody may write it again as soon as that is done.
             if let Some(until) = begin.first_scalar::<i64>(&mut tx).await? {
                 unwanted.push((object, Some((blob, until))));
@@ -224,7 +227,7 @@ impl Store {
                 }
             }
             if let Some((blob, until)) = removal {
-                query(sql::retention::END_REMOVAL).bind(blob).bind(until).execute(&self.database).await?;
+                query(sql::garbage::END_REMOVAL).bind(blob).bind(until).execute(&self.database).await?;
             }
         }
         failure.map_or(Ok(deleted), Err)
@@ -248,33 +251,33 @@ impl Store {
 
 /// Gives a blob's name unless it is reserved.
 fn unreserved(blob: &str) -> Query {
-    query(sql::upload::UNRESERVED).bind(json!([blob]).to_string())
+    query(sql::reservation::UNRESERVED).bind(json!([blob]).to_string())
 }
 
 /// Sweeps take their points, events and idempotency keys along.
 async fn delete_expired_sweeps(tx: &mut Transaction, now: i64) -> Result<u64> {
-    query(sql::retention::DELETE_SWEEPS).bind(now).execute(&mut *tx).await
+    query(sql::garbage::DELETE_SWEEPS).bind(now).execute(&mut *tx).await
 }
 
 /// Work that is final and that no point wants, with its result and artifacts.
 async fn delete_unwanted_work(tx: &mut Transaction) -> Result<u64> {
-    let results = query(sql::retention::DELETE_RESULTS).execute(&mut *tx).await?;
-    query(sql::retention::DELETE_WORK).execute(&mut *tx).await?;
+    let results = query(sql::garbage::DELETE_RESULTS).execute(&mut *tx).await?;
+    query(sql::garbage::DELETE_WORK).execute(&mut *tx).await?;
     Ok(results)
 }
 
 /// Bases that no work changes any more.
 async fn delete_unused_scenarios(tx: &mut Transaction) -> Result<u64> {
-    query(sql::retention::DELETE_SCENARIOS).execute(&mut *tx).await
+    query(sql::garbage::DELETE_SCENARIOS).execute(&mut *tx).await
 }
 
 /// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
 async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
-    let names: Vec<String> = query(sql::retention::ARTIFACT_NAMES).scalars(&mut *tx).await?;
+    let names: Vec<String> = query(sql::garbage::ARTIFACT_NAMES).scalars(&mut *tx).await?;
     let mut expired = 0;
     for name in names {
         let age = policy.artifact_ages.get(&name).unwrap_or(&policy.other_artifacts);
-        expired += query(sql::retention::EXPIRE_ARTIFACTS)
+        expired += query(sql::garbage::EXPIRE_ARTIFACTS)
             .bind(&name)
             .bind(now)
             .bind(now.saturating_sub(milliseconds(*age)))
@@ -286,20 +289,19 @@ async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i
 
 /// Events, idempotency keys, workers and owners' turns that nobody will ask for; tells the number of events.
 async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
-    let events = query(sql::retention::DELETE_EVENTS)
+    let events = query(sql::garbage::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))
         .execute(&mut *tx)
         .await?;
-    for (statement, age) in [
-        (sql::retention::DELETE_IDEMPOTENCY_KEYS, IDEMPOTENCY_MS),
-        (sql::retention::DELETE_WORKERS, WORKER_MS),
-    ] {
+    for (statement, age) in
+        [(sql::garbage::DELETE_IDEMPOTENCY_KEYS, IDEMPOTENCY_MS), (sql::garbage::DELETE_WORKERS, WORKER_MS)]
+    {
         query(statement).bind(now - age).execute(&mut *tx).await?;
     }
-    query(sql::retention::DELETE_UPLOADS).execute(&mut *tx).await?;
-    query(sql::retention::DELETE_REMOVALS).execute(&mut *tx).await?;
-    query(sql::retention::DELETE_SESSIONS).execute(&mut *tx).await?;
-    query(sql::retention::DELETE_TURNS).execute(&mut *tx).await?;
+    query(sql::garbage::DELETE_RESERVATIONS).execute(&mut *tx).await?;
+    query(sql::garbage::DELETE_REMOVALS).execute(&mut *tx).await?;
+    query(sql::garbage::DELETE_SESSIONS).execute(&mut *tx).await?;
+    query(sql::garbage::DELETE_TURNS).execute(&mut *tx).await?;
     Ok(events)
 }
 

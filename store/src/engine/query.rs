@@ -1,6 +1,6 @@
 //! Statements with their parameters, run on whichever engine there is.
 //!
-//! A statement has a text for each engine, and the same parameters and columns on all of them. Both engines are compiled in: which
+//! A statement has a text for each engine, often the same, and the same parameters and columns on all of them. Both engines are compiled in: which
 //! one it is, is known only when the store is opened.
 //!
 //! Functions that run a statement return boxed futures, which are not generic: sqlx's code for both engines is then compiled with this

@@ -1,258 +1,217 @@
-//! The statements, each whole in a file of its own: `store/sql/sqlite/` and `store/sql/postgres/`, in each a folder for each module
-//! that uses them, and the same files. A file begins with a comment that says what the statement does, what its parameters are and what
-//! it gives; these are the same on both engines.
+//! The statements, from files: `store/sql/MODULE.sql` has those that are the same on both engines, `store/sql/sqlite/MODULE.sql` and
+//! `store/sql/postgres/MODULE.sql` have the others, each of them in both. A statement begins with its name (`-- name: NAME`) and a comment
+//! on its purpose, its parameters and its columns.
 //!
 //! The time is the database's: statements read it from the view `clock`. Lists and rows come as one parameter, a JSON array, so
 //! that a statement is the same however many they are.
 
-/// A statement without the comment that it begins with, so that logs begin with the statement.
-const fn without_comment(file: &'static str) -> &'static str {
-    let mut rest = file.as_bytes();
-    while let [b'-', b'-', ..] = rest {
-        while let [first, tail @ ..] = rest {
-            rest = tail;
-            if *first == b'\n' {
-                break;
-            }
+/// Beginning of the line before a statement.
+const HEADER: &[u8] = b"-- name: ";
+
+/// Name of a statement, and its text without the comment, so that logs begin with the statement.
+type Named = (&'static str, &'static str);
+
+/// Number of statements in a file.
+const fn count(file: &str) -> usize {
+    let (file, mut at, mut number) = (file.as_bytes(), 0, 0);
+    while at < file.len() {
+        if has_at(file, at, HEADER) {
+            number += 1;
         }
+        at = next_line(file, at);
     }
-    match str::from_utf8(rest) {
-        Ok(statement) => statement,
-        Err(_) => panic!("a file that is UTF-8 is so after a line break"),
-    }
+    number
 }
 
+/// The statements of a file.
+const fn split<const N: usize>(file: &'static str) -> [Named; N] {
+    let mut found = [("", ""); N];
+    let (bytes, mut at, mut number) = (file.as_bytes(), 0, 0);
+    while at < bytes.len() {
+        assert!(has_at(bytes, at, HEADER), "a statement has a name before it");
+        let name = at + HEADER.len();
+        at = next_line(bytes, at);
+        let name = part(file, name, at - 1);
+        while has_at(bytes, at, b"--") {
+            at = next_line(bytes, at);
+        }
+        let start = at;
+        while at < bytes.len() && !has_at(bytes, at, HEADER) {
+            at = next_line(bytes, at);
+        }
+        let is_last = at == bytes.len();
+        // A blank line stands between two of them.
+        found[number] = (name, part(file, start, if is_last { at } else { at - 1 }));
+        number += 1;
+    }
+    found
+}
+
+/// The statement of a name.
+const fn find(name: &str, among: &[Named]) -> &'static str {
+    let mut number = 0;
+    while number < among.len() {
+        let (found, statement) = among[number];
+        if found.len() == name.len() && has_at(found.as_bytes(), 0, name.as_bytes()) {
+            return statement;
+        }
+        number += 1;
+    }
+    panic!("no statement has this name")
+}
+
+/// Whether a text has another one at a place.
+const fn has_at(text: &[u8], at: usize, other: &[u8]) -> bool {
+    let mut number = 0;
+    while number < other.len() {
+        if at + number >= text.len() || text[at + number] != other[number] {
+            return false;
+        }
+        number += 1;
+    }
+    true
+}
+
+/// Place after the end of a line.
+const fn next_line(text: &[u8], mut at: usize) -> usize {
+    while at < text.len() && text[at] != b'\n' {
+        at += 1;
+    }
+    if at < text.len() { at + 1 } else { at }
+}
+
+const fn part(text: &'static str, start: usize, end: usize) -> &'static str {
+    text.split_at(end).0.split_at(start).1
+}
+
+/// A constant for each statement, in a module for each file: `both` are the same on both engines, `each` has a text of its own.
 macro_rules! statements {
-    ($($module:ident { $($name:ident = $file:literal,)+ })+) => {
+    ($($module:ident { $(both: $($shared:ident),+;)? $(each: $($own:ident),+;)? })+) => {
         $(pub(crate) mod $module {
             use crate::engine::query::Statement;
-            $(pub(crate) const $name: Statement = Statement {
-                sqlite: super::without_comment(include_str!(concat!(
-                    "../../sql/sqlite/",
-                    stringify!($module),
-                    "/",
-                    $file,
-                    ".sql"
-                ))),
-                postgres: super::without_comment(include_str!(concat!(
-                    "../../sql/postgres/",
-                    stringify!($module),
-                    "/",
-                    $file,
-                    ".sql"
-                ))),
-            };)+
+
+            $(
+                const FILE: &str = include_str!(concat!("../../sql/", stringify!($module), ".sql"));
+                const BOTH: [super::Named; super::count(FILE)] = super::split(FILE);
+                $(pub(crate) const $shared: Statement = {
+                    let text = super::find(stringify!($shared), &BOTH);
+                    Statement { sqlite: text, postgres: text }
+                };)+
+            )?
+            $(
+                const SQLITE_FILE: &str = include_str!(concat!("../../sql/sqlite/", stringify!($module), ".sql"));
+                const SQLITE: [super::Named; super::count(SQLITE_FILE)] = super::split(SQLITE_FILE);
+                const POSTGRES_FILE: &str =
+                    include_str!(concat!("../../sql/postgres/", stringify!($module), ".sql"));
+                const POSTGRES: [super::Named; super::count(POSTGRES_FILE)] = super::split(POSTGRES_FILE);
+                $(pub(crate) const $own: Statement = Statement {
+                    sqlite: super::find(stringify!($own), &SQLITE),
+                    postgres: super::find(stringify!($own), &POSTGRES),
+                };)+
+            )?
         })+
 
-        /// All of them, by folder and file.
+        /// All of them, by their paths.
         #[cfg(test)]
-        const ALL: &[(&str, crate::engine::query::Statement)] = &[$($((concat!(stringify!($module), "/", $file), $module::$name),)+)+];
+        const ALL: &[(&str, crate::engine::query::Statement)] = &[$(
+            $($((concat!(stringify!($module), "::", stringify!($shared)), $module::$shared),)+)?
+            $($((concat!(stringify!($module), "::", stringify!($own)), $module::$own),)+)?
+        )+];
     };
 }
 
 statements! {
     census {
-        ARTIFACT_BYTES = "artifact_bytes",
-        DISAGREEMENTS = "disagreements",
-        OLDEST_QUEUED = "oldest_queued",
-        SWEEPS = "sweeps",
+        both: ARTIFACT_BYTES, SWEEPS;
+        each: DISAGREEMENTS, OLDEST_QUEUED;
     }
     check {
-        BLOBS = "blobs",
-        PAGES = "pages",
-        REFERENCES = "references",
-        RESULTS = "results",
-        WITHOUT_RESULT = "without_result",
+        both: BLOBS, RESULTS, WITHOUT_RESULT;
+        each: PAGES, REFERENCES;
     }
     clock {
-        NOW = "now",
-    }
-    collection {
-        BEGIN = "begin",
-        END = "end",
-        LAST = "last",
+        both: NOW;
     }
     event {
-        LIST = "list",
-        MAKE_DURABLE = "make_durable",
-        MARKS = "marks",
-        SINCE = "since",
-        SWEEPS = "sweeps",
+        both: MARKS, SINCE;
+        each: LIST, MAKE_DURABLE, SWEEPS;
     }
     failure {
-        LIST = "list",
+        each: LIST;
+    }
+    garbage {
+        both: ARTIFACT_NAMES, BEGIN_COLLECTION, BEGIN_REMOVAL, BLOBS_IN_USE, DELETE_EVENTS,
+            DELETE_IDEMPOTENCY_KEYS, DELETE_REMOVALS, DELETE_RESERVATIONS, DELETE_RESULTS, DELETE_SESSIONS,
+            DELETE_SWEEPS, DELETE_TURNS, DELETE_WORK, DELETE_WORKERS, END_COLLECTION, END_REMOVAL,
+            EXPIRE_ARTIFACTS, IS_BLOB_IN_USE, LAST_COLLECTION;
+        each: DELETE_SCENARIOS, TRUNCATE_LOG;
+    }
+    lease {
+        both: RENEW;
     }
     machine {
-        KEEP_SPEED = "keep_speed",
-        LATEST_SPEED = "latest_speed",
+        both: KEEP_SPEED, LATEST_SPEED;
+    }
+    order {
+        both: ENDS_OF_ORDER, INSERT_TURN;
     }
     point {
-        ARTIFACTS = "artifacts",
-        LIST = "list",
-        ONE = "one",
-        TABLE = "table",
-        WITH_ARTIFACTS = "with_artifacts",
+        both: ARTIFACTS, ONE, TABLE, WITH_ARTIFACTS;
+        each: LIST;
     }
     probe {
-        INSERT_SCENARIO = "insert_scenario",
-        INSERT_TURN = "insert_turn",
-        INSERT_WORK = "insert_work",
+        both: INSERT_SCENARIO, INSERT_TURN, INSERT_WORK;
     }
     queue {
-        BEGIN_TO_LOOK = "begin_to_look",
-        CANCEL = "cancel",
-        CLAIM = "claim",
-        CRASH = "crash",
-        DELETE_RESULT = "delete_result",
-        DEPTHS = "depths",
-        EARLIER_BLOBS = "earlier_blobs",
-        EARLIER_RESULT = "earlier_result",
-        END_LEASES = "end_leases",
-        END_OUTDATED = "end_outdated",
-        FAIL = "fail",
-        FINISH = "finish",
-        FINISH_AND_CLAIM = "finish_and_claim",
-        FINISH_AT_ONCE = "finish_at_once",
-        INSERT_ARTIFACT = "insert_artifact",
-        INSERT_RESULT = "insert_result",
-        IS_ANYTHING_DUE = "is_anything_due",
-        IS_ANYTHING_OUTDATED = "is_anything_outdated",
-        KEEP_CHECKPOINT = "keep_checkpoint",
-        KEEP_DISAGREEMENT = "keep_disagreement",
-        NOTE_DISAGREEMENT = "note_disagreement",
-        NOTE_WORKER = "note_worker",
-        OPEN_WORK = "open_work",
-        RELEASE = "release",
-        RENEW = "renew",
-        RETRY_LATER = "retry_later",
-        SHORTEN_LEASES = "shorten_leases",
-        WAKE = "wake",
+        both: CANCEL, CRASH, DELETE_RESULT, DEPTHS, EARLIER_BLOBS, EARLIER_RESULT, FAIL, FINISH,
+            INSERT_ARTIFACT, INSERT_RESULT, IS_ANYTHING_DUE, KEEP_CHECKPOINT, NOTE_WORKER, OPEN_WORK, RELEASE,
+            SHORTEN_LEASES, WAKE;
+        each: BEGIN_TO_LOOK, CLAIM, END_LEASES, END_OUTDATED, FINISH_AND_CLAIM, FINISH_AT_ONCE,
+            IS_ANYTHING_OUTDATED, KEEP_DISAGREEMENT, NOTE_DISAGREEMENT, RETRY_LATER;
     }
     repair {
-        MARK = "mark",
-        NAMES_BLOB = "names_blob",
-        QUEUE = "queue",
-        WORK = "work",
-        WORKS_OF_BLOB = "works_of_blob",
+        both: MARK, NAMES_BLOB, WORK, WORKS_OF_BLOB;
+        each: QUEUE;
     }
-    retention {
-        ARTIFACT_NAMES = "artifact_names",
-        BEGIN_REMOVAL = "begin_removal",
-        BLOBS_IN_USE = "blobs_in_use",
-        DELETE_EVENTS = "delete_events",
-        DELETE_IDEMPOTENCY_KEYS = "delete_idempotency_keys",
-        DELETE_REMOVALS = "delete_removals",
-        DELETE_RESULTS = "delete_results",
-        DELETE_SCENARIOS = "delete_scenarios",
-        DELETE_SESSIONS = "delete_sessions",
-        DELETE_SWEEPS = "delete_sweeps",
-        DELETE_TURNS = "delete_turns",
-        DELETE_UPLOADS = "delete_uploads",
-        DELETE_WORK = "delete_work",
-        DELETE_WORKERS = "delete_workers",
-        END_REMOVAL = "end_removal",
-        EXPIRE_ARTIFACTS = "expire_artifacts",
-        IS_BLOB_IN_USE = "is_blob_in_use",
-        TRUNCATE_LOG = "truncate_log",
+    reservation {
+        each: RESERVE, RESERVE_AT_ONCE, UNRESERVED;
     }
     session {
-        CLOSE = "close",
-        OPEN = "open",
-        TOKEN = "token",
+        both: CLOSE, OPEN, TOKEN;
     }
     submit {
-        ANALYZE = "analyze",
-        APPENDED = "appended",
-        COPY_ARTIFACTS = "copy_artifacts",
-        COPY_RESULTS = "copy_results",
-        COUNT = "count",
-        ENDS_OF_ORDER = "ends_of_order",
-        EXTENDED_SWEEP = "extended_sweep",
-        FULLER_RESULTS = "fuller_results",
-        INSERT_APPENDED = "insert_appended",
-        INSERT_IDEMPOTENCY_KEY = "insert_idempotency_key",
-        INSERT_POINTS = "insert_points",
-        INSERT_SCENARIO = "insert_scenario",
-        INSERT_SWEEP = "insert_sweep",
-        INSERT_TURN = "insert_turn",
-        INSERT_WORK = "insert_work",
-        KEEP_HIDDEN = "keep_hidden",
-        KNOWN_RESULTS = "known_results",
-        KNOWN_SWEEP = "known_sweep",
-        KNOWN_WORK = "known_work",
-        OTHERS_RESULTS = "others_results",
-        POINTS_OF = "points_of",
-        SET_POINTS = "set_points",
-        SHOW = "show",
-        VERSION_OF_POINTS = "version_of_points",
+        both: APPENDED, EXTENDED_SWEEP, INSERT_APPENDED, INSERT_IDEMPOTENCY_KEY, INSERT_SCENARIO,
+            INSERT_SWEEP, KEEP_HIDDEN, KNOWN_SWEEP, SET_POINTS, SHOW, VERSION_OF_POINTS;
+        each: ANALYZE, COPY_ARTIFACTS, COPY_RESULTS, COUNT, FULLER_RESULTS, INSERT_POINTS, INSERT_WORK,
+            KNOWN_RESULTS, KNOWN_WORK, OTHERS_RESULTS, POINTS_OF;
     }
     sweep {
-        CANCEL = "cancel",
-        CANCELLED_TO = "cancelled_to",
-        CANCEL_TO = "cancel_to",
-        CANCEL_WORK = "cancel_work",
-        CHANGE = "change",
-        CHANGE_PRIORITY_OF_WORK = "change_priority_of_work",
-        COUNT_EVENTS = "count_events",
-        DELETABLE = "deletable",
-        DELETE = "delete",
-        DELETE_EVENTS = "delete_events",
-        DELETE_POINTS = "delete_points",
-        FORGET_KEYS = "forget_keys",
-        HALF_CANCELLED = "half_cancelled",
-        HIDE = "hide",
-        HOLD_BACK = "hold_back",
-        KEEP_RUNNING_WORK = "keep_running_work",
-        LAST_POINT = "last_point",
-        LEAVE_WORK = "leave_work",
-        LEFT_HIDDEN = "left_hidden",
-        LIST = "list",
-        ONE = "one",
-        OWN_RESULTS = "own_results",
-        PAUSE = "pause",
-        PHYSICS_VERSIONS = "physics_versions",
-        RECOUNT = "recount",
-        RETRY_WORK = "retry_work",
-        REVIVE = "revive",
-        STOP_WORK = "stop_work",
-        VERSION = "version",
+        both: CANCEL, CANCEL_TO, CANCEL_WORK, CANCELLED_TO, CHANGE, CHANGE_PRIORITY_OF_WORK, COUNT_EVENTS,
+            DELETABLE, DELETE, DELETE_EVENTS, DELETE_POINTS, FORGET_KEYS, HALF_CANCELLED, HIDE, HOLD_BACK,
+            KEEP_RUNNING_WORK, LEAVE_WORK, LEFT_HIDDEN, OWN_RESULTS, PAUSE, RECOUNT, REVIVE, STOP_WORK,
+            VERSION;
+        each: LAST_POINT, LIST, ONE, PHYSICS_VERSIONS, RETRY_WORK;
     }
     token {
-        CREATE = "create",
-        LIST = "list",
-        PRESENT = "present",
-        REVOKE = "revoke",
-        TOUCH = "touch",
-        VALID = "valid",
+        both: LIST, PRESENT, REVOKE, TOUCH, VALID;
+        each: CREATE;
     }
     transfer {
-        BLOBS = "blobs",
-        COLUMNS = "columns",
-        COUNT_BLOBS = "count_blobs",
-        RELEASE = "release",
-        USERS = "users",
-    }
-    upload {
-        RESERVE = "reserve",
-        RESERVE_AT_ONCE = "reserve_at_once",
-        UNRESERVED = "unreserved",
+        both: BLOBS, COUNT_BLOBS, RELEASE, USERS;
+        each: COLUMNS;
     }
     verification {
-        LIST = "list",
+        each: LIST;
     }
     worker {
-        END_LEASES = "end_leases",
-        LIST = "list",
-        REGISTER = "register",
-        REMOVE = "remove",
-        REMOVE_PROCESS = "remove_process",
+        both: END_LEASES, LIST, REGISTER, REMOVE, REMOVE_PROCESS;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-    use std::path::{Path, PathBuf};
+    use std::collections::{BTreeMap, BTreeSet};
+    use std::path::Path;
 
     use sqlx::{AssertSqlSafe, Row as _};
 
@@ -286,70 +245,82 @@ mod tests {
     /// The statements that go through anything else from end to end, and what: they count or delete over all, or list the
     /// newest of all.
     const WHOLE: &[(&str, &str)] = &[
-        ("census/artifact_bytes", "artifact"),
-        ("census/sweeps", "sweep"),
-        ("check/blobs", "artifact"),
-        ("check/references", "pragma_foreign_key_check"),
-        ("check/results", "result"),
-        ("check/without_result", "work"),
-        ("event/marks", "sweep"),
-        ("event/since", "sweep"),
-        ("retention/artifact_names", "artifact"),
-        ("retention/blobs_in_use", "artifact"),
-        ("retention/blobs_in_use", "upload"),
-        ("retention/blobs_in_use", "work"),
-        ("retention/delete_events", "event"),
-        ("retention/delete_idempotency_keys", "idempotency"),
-        ("retention/delete_removals", "removal"),
-        ("retention/delete_results", "result"),
-        ("retention/delete_scenarios", "scenario"),
-        ("retention/delete_sessions", "session"),
-        ("retention/delete_sweeps", "sweep"),
-        ("retention/delete_uploads", "upload"),
-        ("retention/delete_work", "work"),
-        ("retention/expire_artifacts", "result"),
-        ("retention/is_blob_in_use", "work"),
-        ("sweep/list", "sweep"),
-        ("transfer/blobs", "work"),
-        ("transfer/columns", "pragma_table_xinfo"),
-        ("transfer/count_blobs", "artifact"),
-        ("transfer/count_blobs", "work"),
+        ("census::ARTIFACT_BYTES", "artifact"),
+        ("census::SWEEPS", "sweep"),
+        ("check::BLOBS", "artifact"),
+        ("check::REFERENCES", "pragma_foreign_key_check"),
+        ("check::RESULTS", "result"),
+        ("check::WITHOUT_RESULT", "work"),
+        ("event::MARKS", "sweep"),
+        ("event::SINCE", "sweep"),
+        ("garbage::ARTIFACT_NAMES", "artifact"),
+        ("garbage::BLOBS_IN_USE", "artifact"),
+        ("garbage::BLOBS_IN_USE", "upload"),
+        ("garbage::BLOBS_IN_USE", "work"),
+        ("garbage::DELETE_EVENTS", "event"),
+        ("garbage::DELETE_IDEMPOTENCY_KEYS", "idempotency"),
+        ("garbage::DELETE_REMOVALS", "removal"),
+        ("garbage::DELETE_RESULTS", "result"),
+        ("garbage::DELETE_SCENARIOS", "scenario"),
+        ("garbage::DELETE_SESSIONS", "session"),
+        ("garbage::DELETE_SWEEPS", "sweep"),
+        ("garbage::DELETE_RESERVATIONS", "upload"),
+        ("garbage::DELETE_WORK", "work"),
+        ("garbage::EXPIRE_ARTIFACTS", "result"),
+        ("garbage::IS_BLOB_IN_USE", "work"),
+        ("sweep::LIST", "sweep"),
+        ("transfer::BLOBS", "work"),
+        ("transfer::COLUMNS", "pragma_table_xinfo"),
+        ("transfer::COUNT_BLOBS", "artifact"),
+        ("transfer::COUNT_BLOBS", "work"),
     ];
 
-    /// An engine: its folder, the sign before the number of a parameter, and its text of a statement.
-    type Engine = (&'static str, char, fn(&Statement) -> &'static str);
+    /// An engine: the folder of its own statements, and its text of a statement.
+    type Engine = (&'static str, fn(&Statement) -> &'static str);
 
     const ENGINES: [Engine; 2] =
-        [("sqlite", '?', |statement| statement.sqlite), ("postgres", '$', |statement| statement.postgres)];
+        [("sqlite", |statement| statement.sqlite), ("postgres", |statement| statement.postgres)];
 
-    fn folder(engine: &str) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("sql").join(engine)
+    /// Comments and texts of the statements in a folder, by their paths.
+    fn files(folder: &str) -> BTreeMap<String, (String, String)> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("sql").join(folder);
+        let mut found = BTreeMap::new();
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                continue;
+            }
+            let (module, file) = (path.file_stem().unwrap(), std::fs::read_to_string(&path).unwrap());
+            for one in file.split("-- name: ").skip(1) {
+                let (name, text) = one.split_once('\n').unwrap();
+                let comment: String =
+                    text.split_inclusive('\n').take_while(|line| line.starts_with("--")).collect();
+                let statement = format!("{}\n", text[comment.len()..].trim_end());
+                found.insert(format!("{}::{name}", module.to_str().unwrap()), (comment, statement));
+            }
+        }
+        found
     }
 
     #[test]
-    fn every_file_is_a_statement_and_says_what_its_parameters_are() {
-        for (engine, sign, text) in ENGINES {
-            let folder = folder(engine);
-            let mut files = BTreeSet::new();
-            for module in std::fs::read_dir(&folder).unwrap() {
-                for file in std::fs::read_dir(module.unwrap().path()).unwrap() {
-                    let path = file.unwrap().path().with_extension("");
-                    files.insert(path.strip_prefix(&folder).unwrap().to_str().unwrap().to_owned());
-                }
+    fn every_statement_of_the_files_is_listed_and_says_what_its_parameters_are() {
+        for (engine, text) in ENGINES {
+            let mut files = self::files("");
+            for (name, statement) in self::files(engine) {
+                assert_eq!(files.insert(name, statement), None, "{engine} has a statement of both");
             }
-            assert_eq!(files, ALL.iter().map(|(name, _)| (*name).to_owned()).collect());
+            let listed: BTreeSet<_> = ALL.iter().map(|(name, _)| (*name).to_owned()).collect();
+            assert_eq!(files.keys().cloned().collect::<BTreeSet<_>>(), listed);
             for (name, statement) in ALL {
+                let (comment, written) = &files[*name];
                 let statement = text(statement);
-                let file = std::fs::read_to_string(folder.join(name).with_extension("sql")).unwrap();
-                let comment = file.strip_suffix(statement).unwrap();
+                assert_eq!(statement, written, "{engine}: {name}");
                 assert!(comment.starts_with("-- "), "{engine}: {name} says nothing of itself");
                 assert!(!statement.contains("--"), "{engine}: {name} has a comment inside");
                 for number in 1..20 {
-                    let parameter = format!("{sign}{number}");
                     assert_eq!(
-                        names(comment, &parameter),
-                        names(statement, &parameter),
-                        "{parameter} of {name}"
+                        names(comment, number),
+                        names(statement, number),
+                        "{engine}: ${number} of {name}"
                     );
                 }
             }
@@ -357,8 +328,9 @@ mod tests {
     }
 
     /// Whether a text names a parameter.
-    fn names(text: &str, parameter: &str) -> bool {
-        text.match_indices(parameter)
+    fn names(text: &str, number: usize) -> bool {
+        let parameter = format!("${number}");
+        text.match_indices(&parameter)
             .any(|(at, found)| !text[at + found.len()..].starts_with(|next: char| next.is_ascii_digit()))
     }
 
@@ -366,13 +338,20 @@ mod tests {
     fn a_statement_has_the_same_parameters_on_both_engines() {
         for (name, statement) in ALL {
             for number in 1..20 {
-                let (of_sqlite, of_postgres) = (format!("?{number}"), format!("${number}"));
                 assert_eq!(
-                    names(statement.sqlite, &of_sqlite),
-                    names(statement.postgres, &of_postgres),
+                    names(statement.sqlite, number),
+                    names(statement.postgres, number),
                     "parameter {number} of {name}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn what_is_the_same_on_both_engines_is_written_once() {
+        let (sqlite, postgres) = (files("sqlite"), files("postgres"));
+        for (name, (_, statement)) in &sqlite {
+            assert_ne!(*statement, postgres[name].1, "{name}");
         }
     }
 
@@ -411,7 +390,7 @@ mod tests {
                 }
             }
         }
-        let whole: Vec<(&str, &str)> = whole.iter().map(|(name, table)| (*name, table.as_str())).collect();
-        assert_eq!(whole, WHOLE);
+        let listed: BTreeSet<_> = WHOLE.iter().map(|(name, table)| (*name, (*table).to_owned())).collect();
+        assert_eq!(whole, listed);
     }
 }

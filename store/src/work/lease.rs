@@ -29,7 +29,7 @@ pub enum Renewal {
 impl Lease {
     /// The statement that extends it: gives whether a cancellation is asked for; nothing if it is lost.
     pub(crate) fn renewing(&self, lease_ms: i64, progress: f64) -> Query {
-        query(sql::queue::RENEW)
+        query(sql::lease::RENEW)
             .bind(self.key.as_slice())
             .bind(self.fencing_token)
             .bind(&self.worker)

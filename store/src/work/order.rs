@@ -23,7 +23,7 @@ pub(crate) struct Order {
 
 /// Where an owner's order ends; an owner that has had no turn gets the first.
 pub(crate) async fn end_of_order(tx: &mut Transaction, owner: &str) -> Result<Order> {
-    query(sql::submit::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
-    let (first, last) = query(sql::submit::ENDS_OF_ORDER).bind(owner).one(&mut *tx).await?;
+    query(sql::order::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
+    let (first, last) = query(sql::order::ENDS_OF_ORDER).bind(owner).one(&mut *tx).await?;
     Ok(Order { first, last })
 }

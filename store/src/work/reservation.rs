@@ -36,7 +36,7 @@ impl Store {
         let names: BTreeSet<String> = blobs.iter().map(BlobId::to_string).collect();
         let wanted = json!(names).to_string();
         loop {
-            let at_once = query(sql::upload::RESERVE_AT_ONCE)
+            let at_once = query(sql::reservation::RESERVE_AT_ONCE)
                 .bind(lease.key.as_slice())
                 .bind(lease.fencing_token)
                 .bind(&lease.worker)
@@ -61,7 +61,7 @@ impl Store {
         let renewal = Renewal::of(lease.renewing(lease_ms, 1.0).first_scalar(&mut tx).await?);
         let mut reserved = 0;
         if renewal != Renewal::Lost {
-            let reserve = query(sql::upload::RESERVE).bind(wanted).bind(RESERVED_MS);
+            let reserve = query(sql::reservation::RESERVE).bind(wanted).bind(RESERVED_MS);
             reserved = reserve.scalars::<String>(&mut tx).await?.len() as i64;
         }
         tx.commit().await?;
@@ -93,7 +93,7 @@ impl Store {
     async fn reserve_one(&self, blob: BlobId) -> Result<()> {
         let wanted = json!([blob.to_string()]).to_string();
         loop {
-            let reserve = query(sql::upload::RESERVE).bind(&wanted).bind(RESERVED_MS);
+            let reserve = query(sql::reservation::RESERVE).bind(&wanted).bind(RESERVED_MS);
             if !reserve.rows::<(String,)>(&self.database).await?.is_empty() {
                 return Ok(());
             }
@@ -110,7 +110,7 @@ pub(crate) async fn require_reserved(
 ) -> Result<()> {
     let names: Value = blobs.into_iter().map(|blob| blob.to_string()).collect();
     let missing: Vec<String> =
-        query(sql::upload::UNRESERVED).bind(names.to_string()).scalars(&mut *tx).await?;
+        query(sql::reservation::UNRESERVED).bind(names.to_string()).scalars(&mut *tx).await?;
     match missing.into_iter().next() {
         Some(blob) => Err(StoreError::BlobMissing(blob)),
         None => Ok(()),
@@ -128,13 +128,13 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Worker)).await.unwrap();
         let blob = BlobId::of(b"history");
-        let note = || query(sql::retention::BEGIN_REMOVAL).bind(blob.to_string()).bind(600_000);
+        let note = || query(sql::garbage::BEGIN_REMOVAL).bind(blob.to_string()).bind(600_000);
         let until: i64 = note().scalar(&store.database).await.unwrap();
         let others: Option<i64> = note().first_scalar(&store.database).await.unwrap();
         assert_eq!(others, None, "one at a time deletes it");
         let mut writing = Box::pin(store.put_blob(b"history".to_vec()));
         assert!(tokio::time::timeout(4 * POLL, &mut writing).await.is_err(), "it may vanish at any time");
-        let end = |until: i64| query(sql::retention::END_REMOVAL).bind(blob.to_string()).bind(until);
+        let end = |until: i64| query(sql::garbage::END_REMOVAL).bind(blob.to_string()).bind(until);
         assert_eq!(end(until + 1).execute(&store.database).await.unwrap(), 0, "only its own note");
         assert_eq!(end(until).execute(&store.database).await.unwrap(), 1);
         assert_eq!(writing.await.unwrap(), blob);

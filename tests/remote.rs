@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use drillsweep_server::Retaining;
+use drillsweep_server::RetentionConfig;
 use drillsweep_store::{Metrics, ObjectsLocation, RetentionPolicy, Role, Store, StoreConfig};
 use jiff::{SignedDuration, Timestamp};
 use serde_json::{Value, json};
@@ -374,7 +374,7 @@ fn machines_whose_clocks_differ_work_together_by_that_of_the_database() {
 
 /// Nothing is too young to be deleted.
 fn at_once() -> RetentionPolicy {
-    RetentionPolicy { blob_grace: Duration::ZERO, ..Retaining::default().policy }
+    RetentionPolicy { blob_grace: Duration::ZERO, ..RetentionConfig::default().policy }
 }
 
 /// Collects garbage over and over beside all else.

@@ -62,8 +62,8 @@ def test_paths_are_recognised() -> None:
     text = "`sim/src/lib.rs`, `python docs/{a,b}.py`, `GET /v1/sweeps`, `text/csv`, `law.rs`\n```sh\n.ci/run\n```\n"
     assert named(text) == ["sim/src/lib.rs", "docs/a.py", "docs/b.py", "law.rs", ".ci/run"]
     assert not exists("law.rs")
-    assert exists("store/sql/ENGINE/MODULE/NAME.sql")
-    assert not exists("store/sql/ENGINE/MODULE/NAME.rs")
+    assert exists("store/sql/ENGINE/MODULE.sql")
+    assert not exists("store/sql/ENGINE/MODULE.rs")
 
 
 def test_every_crate_is_on_the_map_and_in_the_index() -> None:

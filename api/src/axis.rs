@@ -1,4 +1,4 @@
-//! One axis of a sweep: the values that one parameter takes.
+//! One axis of a sweep: the name of a parameter, and the values that it takes.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -180,6 +180,34 @@ impl TryFrom<AxisFields> for Axis {
 }
 
 /// The schemas of the three forms of an axis, which exclude each other by the members that they require and allow.
+/// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
+/// scenario.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(transparent)]
+pub struct AxisName(String);
+
+impl AxisName {
+    /// The names of the parameters that have one besides their path, with that path.
+    pub const NAMED: [(&str, &str); 2] = [("flow_rate", "mud.flow_rate"), ("mud_density", "mud.density")];
+
+    /// The name as it is written.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// The path of the scenario's field.
+    pub fn scenario_path(&self) -> &str {
+        AxisName::NAMED.iter().find(|(name, _)| *name == self.0).map_or(&self.0, |(_, path)| path)
+    }
+}
+
+impl From<&str> for AxisName {
+    fn from(name: &str) -> Self {
+        AxisName(name.to_owned())
+    }
+}
+
 #[cfg(feature = "openapi")]
 mod schema {
     use utoipa::openapi::schema::{OneOf, Schema};

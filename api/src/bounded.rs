@@ -2,14 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::hash::Hash;
 use std::marker::PhantomData;
 
 use indexmap::IndexMap;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
-use crate::axis::Axis;
-use crate::request::AxisName;
 use crate::service::LIMITS;
 
 /// The changes of a request, [`LIMITS`]`.changes_per_request` at most.
@@ -18,7 +17,12 @@ pub(crate) fn changes<'de, D: Deserializer<'de>>(format: D) -> Result<BTreeMap<S
 }
 
 /// The axes of a request, [`LIMITS`]`.axes_per_sweep` at most.
-pub(crate) fn axes<'de, D: Deserializer<'de>>(format: D) -> Result<IndexMap<AxisName, Axis>, D::Error> {
+pub(crate) fn axes<'de, D, Name, Values>(format: D) -> Result<IndexMap<Name, Values>, D::Error>
+where
+    D: Deserializer<'de>,
+    Name: Deserialize<'de> + Hash + Eq,
+    Values: Deserialize<'de>,
+{
     map(format, LIMITS.axes_per_sweep, "axes")
 }
 

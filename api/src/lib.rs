@@ -25,7 +25,7 @@ pub mod time_span;
 pub mod verify;
 pub mod view;
 
-pub use axis::{Axis, Scale};
+pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::{DeletedSweep, PointEvent};
 pub use expand::{
@@ -39,7 +39,7 @@ pub use point::{
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
-pub use request::{AppendRequest, AxisName, Design, RunRequest, SweepPatch, SweepRequest};
+pub use request::{AppendRequest, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
     Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
     ScenarioFile, ScenarioFormat, ScenarioList, Session, Worker, WorkerList,

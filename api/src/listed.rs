@@ -6,8 +6,8 @@ use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::ser::{SerializeMap, SerializeSeq};
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::axis::AxisName;
 use crate::bounded::Bound;
-use crate::request::AxisName;
 use crate::service::LIMITS;
 
 /// Points with a value for each parameter that the first of them names. On the wire each is an object.

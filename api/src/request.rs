@@ -9,7 +9,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use crate::axis::Axis;
+use crate::axis::{Axis, AxisName};
 use crate::bounded;
 use crate::listed::ListedPoints;
 use crate::problem::{FieldProblem, ProblemDetails};
@@ -334,33 +334,5 @@ impl Design {
     /// Whether the design draws values from the axes' intervals, rather than taking the axes' own.
     pub(crate) fn is_drawn(self) -> bool {
         matches!(self, Design::LatinHypercube | Design::Sobol)
-    }
-}
-
-/// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
-/// scenario.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(transparent)]
-pub struct AxisName(String);
-
-impl AxisName {
-    /// The names of the parameters that have one besides their path, with that path.
-    pub const NAMED: [(&str, &str); 2] = [("flow_rate", "mud.flow_rate"), ("mud_density", "mud.density")];
-
-    /// The name as it is written.
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-
-    /// The path of the scenario's field.
-    pub fn scenario_path(&self) -> &str {
-        AxisName::NAMED.iter().find(|(name, _)| *name == self.0).map_or(&self.0, |(_, path)| path)
-    }
-}
-
-impl From<&str> for AxisName {
-    fn from(name: &str) -> Self {
-        AxisName(name.to_owned())
     }
 }

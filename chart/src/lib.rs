@@ -13,6 +13,7 @@ mod profile;
 mod shown;
 mod spectrum;
 mod sweep;
+mod words;
 
 pub use cost::work_precision;
 pub use history::{Bit, history, shown_of_history};

@@ -3,7 +3,7 @@
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::{Name, Quantity};
 
-use crate::shown::words;
+use crate::words::words;
 
 /// Where a node lies, for what is said of its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -5,7 +5,8 @@ use drillsweep_table::Table;
 use drillsweep_table::quantity::columns::*;
 
 use crate::picture::{Drawing, Line, LinePlot, VerticalAxis};
-use crate::shown::{Shown, numbers, with_unit, words};
+use crate::shown::{Shown, numbers, with_unit};
+use crate::words::words;
 
 /// Values along the string, depth downwards: C_f, or the first of the `fields` that are given.
 ///

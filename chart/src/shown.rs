@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::picture::axis::three_digits;
 use crate::place::{Place, at_place};
+use crate::words::words;
 
 /// Columns that are shown on one axis, in its unit.
 pub(crate) struct Shown<'t> {
@@ -88,15 +89,6 @@ fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
 /// A length across the hole in the unit in which it is shown.
 pub(crate) fn width(value: f64) -> f64 {
     units::WIDTH.shown.of(value)
-}
-
-/// A column's name in words; of a part of a list with which part it is.
-pub(crate) fn words(name: &str) -> String {
-    let label = Name::parse(name).map_or_else(|| name.replace('_', " "), |name| name.to_string());
-    match name.rfind(']') {
-        Some(end) => format!("{label} of {}", &name[..=end]),
-        None => label,
-    }
 }
 
 pub(crate) fn with_unit(name: &str) -> String {

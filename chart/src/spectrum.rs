@@ -8,7 +8,8 @@ use serde_json::Value;
 
 use crate::picture::axis::three_digits;
 use crate::picture::{Drawing, Label, Line, LinePlot, Shade, VerticalAxis};
-use crate::shown::{node_of, numbers, width, with_unit, words};
+use crate::shown::{node_of, numbers, width, with_unit};
+use crate::words::words;
 
 /// Lines of a spectrum that are named in its picture.
 const NAMED_LINES: usize = 6;

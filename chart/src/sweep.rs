@@ -8,7 +8,8 @@ use indexmap::{IndexMap, IndexSet};
 
 use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
 use crate::place::{Place, at_place};
-use crate::shown::{Shown, amount, axis, numbers, with_unit, words};
+use crate::shown::{Shown, amount, axis, numbers, with_unit};
+use crate::words::words;
 
 /// The motion regime of a run that has not settled.
 const NOT_SETTLED: &str = "not_settled";

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
-use drillsweep_server::Retaining;
+use drillsweep_server::RetentionConfig;
 use drillsweep_store::{Garbage, RetentionPolicy, Role, Store};
 
 use crate::data::DataArguments;
@@ -46,8 +46,8 @@ pub(crate) struct RetentionArguments {
 impl RetentionArguments {
     /// Retention policy by these arguments.
     pub(crate) fn policy(&self) -> RetentionPolicy {
-        let mut policy = Retaining::default().policy;
-        policy.artifact_ages = Retaining::of_recordings(DAY * self.recordings_days);
+        let mut policy = RetentionConfig::default().policy;
+        policy.artifact_ages = RetentionConfig::of_recordings(DAY * self.recordings_days);
         policy.other_artifacts = DAY * self.tables_days;
         policy.events = DAY * self.events_days;
         policy.blob_grace = Duration::from_secs(3_600) * self.grace_hours;

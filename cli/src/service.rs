@@ -15,9 +15,9 @@ use anyhow::Context;
 use clap::Args;
 use drillsweep_api::time_span;
 use drillsweep_server::{
-    Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, Retaining,
+    Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, RetentionConfig,
 };
-use drillsweep_store::{Role, Store, StoreConfig, patiently};
+use drillsweep_store::{Role, Store, StoreConfig, with_backoff};
 use drillsweep_worker::{WorkerConfig, host_name};
 use rustix::process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit};
 use tokio::net::TcpListener;
@@ -333,7 +333,7 @@ impl Service {
     /// Opens the store and takes the addresses, if the server may listen on them.
     async fn listening(data: &DataArguments, arguments: &ListenArguments) -> anyhow::Result<Self> {
         let config = data.store(Role::Server)?;
-        let store = patiently(|| Store::open(&config)).await?;
+        let store = with_backoff(|| Store::open(&config)).await?;
         store.check_certificate().await?;
         for exposed in data.exposed(&config) {
             tracing::warn!("{exposed}");
@@ -358,7 +358,7 @@ impl Service {
                 per_address: arguments.connections_per_address,
                 ..ConnectionLimits::default()
             },
-            retention: Retaining {
+            retention: RetentionConfig {
                 policy: arguments.retention.policy(),
                 interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
             },

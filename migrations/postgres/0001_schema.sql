@@ -33,7 +33,7 @@ CREATE TABLE sweep (
     version                 BIGINT  NOT NULL DEFAULT 1,
     -- Raised with every change that somebody asked for.
     revision                BIGINT  NOT NULL DEFAULT 1,
-    -- Points by the state of their work, kept by the trigger `work_changes_state`: counting them at every look would cost
+    -- Points by the state of their work, kept by `apply_pending_transitions`: counting them at every look would cost
     -- more than computing them at some size of sweep.
     points                  BIGINT  NOT NULL,
     points_queued           BIGINT  NOT NULL DEFAULT 0,
@@ -99,21 +99,15 @@ CREATE TABLE work (
     physics_version  BIGINT  NOT NULL,
     -- In whose turn it is handed out.
     owner            TEXT COLLATE "C" NOT NULL,
-    -- Which states there are, and which ways from one to another, is told by `TRANSITIONS` in store/src/state.rs.
-    state            TEXT COLLATE "C" NOT NULL CHECK (state IN ('waiting', 'queued', 'leased', 'done', 'failed', 'dead', 'cancelled')),
-    -- How the sweeps that have it count it.
-    stage            TEXT    COLLATE "C" NOT NULL GENERATED ALWAYS AS (
-        CASE state WHEN 'waiting' THEN 'queued' WHEN 'leased' THEN 'running' WHEN 'dead' THEN 'failed' ELSE state END
-    ) STORED,
+    -- Which states there are, and which ways from one to another, is told by `TRANSITIONS` in store/src/work/state.rs.
+    state            TEXT COLLATE "C" NOT NULL,
+    -- How the sweeps that have it count it. This column and the next two follow from the state (`follow_state`).
+    stage            TEXT COLLATE "C" NOT NULL DEFAULT 'queued',
     -- Still to be computed, or under way. All else is final, and changes only if somebody asks for it.
-    is_open          BOOLEAN NOT NULL GENERATED ALWAYS AS (state IN ('waiting', 'queued', 'leased')) STORED,
+    is_open          BOOLEAN NOT NULL DEFAULT true,
     -- How cancelled sweeps that have it count it: what goes on for others is cancelled for them, what is being stopped has still to
     -- end.
-    stage_of_cancelled TEXT  COLLATE "C" NOT NULL GENERATED ALWAYS AS (
-        CASE WHEN state IN ('waiting', 'queued', 'leased') AND NOT cancel_requested THEN 'cancelled'
-             WHEN state = 'waiting' THEN 'queued' WHEN state = 'leased' THEN 'running' WHEN state = 'dead' THEN 'failed'
-             ELSE state END
-    ) STORED,
+    stage_of_cancelled TEXT COLLATE "C" NOT NULL DEFAULT 'cancelled',
     -- Wanted by paused sweeps only: not handed out until one of them goes on.
     held             BOOLEAN NOT NULL DEFAULT false,
     -- Within its owner the most urgent goes first, then the least place in the order asked for.
@@ -144,30 +138,34 @@ CREATE TABLE work (
     changed          BIGINT  NOT NULL,
     -- The blob that a suspended run goes on from; none for one that begins at its start.
     checkpoint       TEXT COLLATE "C",
-    base             BYTEA REFERENCES scenario (hash),
+    base             BYTEA,
     -- What the work item has in place of the base's values: a JSON object by path.
     changes          TEXT    NOT NULL DEFAULT '{}',
     -- What is known of the worker that has the work, should it be heard of no more: how full its memory was, or how its process ended.
     worker_note      TEXT
-) WITH (autovacuum_vacuum_scale_factor = 0.02, autovacuum_analyze_scale_factor = 0.02);
+) WITH (
+    autovacuum_vacuum_scale_factor = 0.02, autovacuum_analyze_scale_factor = 0.02,
+    -- A renewal changes no column that an index has, and finds room next to its row: so it writes no index.
+    fillfactor = 80
+);
 
--- Only the rows that a statement looks for: these indexes stay small however many points are finished.
-CREATE INDEX work_ready ON work (physics_version, owner, priority DESC, vtime, key) WHERE state = 'queued' AND NOT held;
-CREATE INDEX work_leased ON work (lease_until) WHERE state = 'leased';
+-- Only the rows that a statement looks for: these indexes stay small however many points are finished. They are few, since each claim,
+-- each result and each submitted point writes them. All open work is gone through by `work_open_by_owner`; work that waits for a version
+-- of the numbers is in `work_ready`, in `work_waiting`, or held.
+
+-- In the order of claims, all ascending: so a place in it is one bound.
+CREATE INDEX work_ready ON work (physics_version, owner, (-priority), vtime, key) WHERE state = 'queued' AND NOT held;
+CREATE INDEX work_held ON work (physics_version) WHERE state = 'queued' AND held;
+CREATE INDEX work_leased ON work (key) WHERE state = 'leased';
 CREATE INDEX work_waiting ON work (ready_at) WHERE state = 'waiting';
-CREATE INDEX work_open ON work (vtime) WHERE is_open;
 CREATE INDEX work_open_by_owner ON work (owner, vtime) WHERE is_open;
--- Whether a version of the numbers is waited for.
-CREATE INDEX work_open_by_version ON work (physics_version) WHERE is_open;
 -- What was given up, the latest first.
 CREATE INDEX work_given_up ON work (changed) WHERE stage = 'failed';
--- Whether a base is in use: the garbage collector asks it of every base, and so does the reference when one is deleted.
-CREATE INDEX work_by_base ON work (base);
 
--- Points, and beside them the reference runs that verify some: cancelling, pausing, retrying, priority and retention go by the
+-- Points, and next to them the reference runs that verify some: cancelling, pausing, retrying, priority and retention go by the
 -- work behind a row, and hold for both. Counts and listings tell them apart by `verifies`.
 CREATE TABLE point (
-    sweep_id   TEXT COLLATE "C" NOT NULL REFERENCES sweep (id) ON DELETE CASCADE,
+    sweep_id   TEXT COLLATE "C" NOT NULL,
     -- Whether it is the reference run that verifies the point with this ordinal, and not that point.
     verifies   BOOLEAN NOT NULL,
     -- From 1.
@@ -175,42 +173,11 @@ CREATE TABLE point (
     -- The swept parameters, a JSON object.
     parameters TEXT    NOT NULL,
     -- A sweep may have the same work at several points, and several sweeps may.
-    work_key   BYTEA   NOT NULL REFERENCES work (key),
+    work_key   BYTEA   NOT NULL,
     PRIMARY KEY (sweep_id, verifies, ordinal)
 );
 
 CREATE INDEX point_by_work ON point (work_key);
-
--- Writers of two kinds (store/src/database.rs): what changes the state of work shares this lock, what changes several items,
--- points or sweeps has it alone.
-CREATE FUNCTION share_the_writers_lock() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-    PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
-    RETURN NULL;
-END
-$$;
-
-CREATE TRIGGER work_is_written BEFORE INSERT OR DELETE OR UPDATE OF state, cancel_requested ON work
-FOR EACH STATEMENT EXECUTE FUNCTION share_the_writers_lock();
-
--- Work goes its ways and no others, whichever statement moves it.
-CREATE FUNCTION refuse_transition() RETURNS trigger LANGUAGE plpgsql AS $$
-BEGIN
-    RAISE EXCEPTION 'a work item cannot go from its state to that one';
-END
-$$;
-
-CREATE TRIGGER work_keeps_to_its_transitions AFTER UPDATE OF state ON work FOR EACH ROW
-WHEN (NEW.state <> OLD.state AND NOT CASE OLD.state
-         WHEN 'queued'  THEN NEW.state IN ('leased', 'done', 'failed', 'cancelled')
-         WHEN 'leased'  THEN NEW.state IN ('waiting', 'queued', 'done', 'failed', 'dead', 'cancelled')
-         WHEN 'waiting' THEN NEW.state IN ('queued', 'done', 'failed', 'cancelled')
-         ELSE NEW.state = 'queued'
-     END)
-EXECUTE FUNCTION refuse_transition();
-
--- A worker's role may change work, and neither turns nor sweeps (deploy/postgres/worker-role.sql): what follows from a change of work is
--- done in the name of the tables' owner.
 
 -- Owners take turns (start-time fair queueing): the one whose virtual time is least is served, and pays for it. Within an
 -- owner the most urgent goes first, then the order asked for: work.vtime is a place in that order.
@@ -219,24 +186,9 @@ CREATE TABLE owner_turn (
     vtime BIGINT NOT NULL
 ) WITH (fillfactor = 50);
 
--- Idle time is not saved up: who comes back has missed all turns but the one before the latest. Of claims at the same moment each
--- pays for its own turn.
-CREATE FUNCTION take_a_turn() RETURNS trigger LANGUAGE plpgsql
-SECURITY DEFINER SET search_path FROM CURRENT AS $$
-BEGIN
-    UPDATE owner_turn SET vtime = greatest(vtime, (SELECT max(vtime) FROM owner_turn) - 1000) + 1000
-    WHERE owner = NEW.owner;
-    RETURN NULL;
-END
-$$;
-
-CREATE TRIGGER work_takes_a_turn AFTER UPDATE OF state ON work FOR EACH ROW
-WHEN (NEW.state = 'leased' AND OLD.state <> 'leased')
-EXECUTE FUNCTION take_a_turn();
-
 -- Changes of state, for those who watch a sweep.
 CREATE TABLE event (
-    sweep_id TEXT COLLATE "C" NOT NULL REFERENCES sweep (id) ON DELETE CASCADE,
+    sweep_id TEXT COLLATE "C" NOT NULL,
     -- The sweep's version after the change.
     seq      BIGINT NOT NULL,
     -- The new state of the work.
@@ -246,84 +198,527 @@ CREATE TABLE event (
     PRIMARY KEY (sweep_id, seq)
 );
 
--- A change of a work item's state reaches every sweep that has it in the same transaction, whichever statement
--- made it: counts, version, end, event. A sweep may have the same work item at several points, and verify points by it; it
--- is finished when neither its points nor its reference runs have an open one. A cancelled sweep counts by `stage_of_cancelled`, and
--- of what others compute it hears only the outcome.
---
--- The version of a finished sweep is one more than the number of its last event: who has seen that event, and not the end, is
--- told from who has seen both.
---
--- The sweeps are locked by their identifiers' order before they are changed, so that two work items of the same two sweeps do not
--- wait for each other. An event's number is taken under that lock, which ends with the transaction: nobody sees a later event
--- before an earlier one.
-CREATE FUNCTION tell_the_sweeps() RETURNS trigger LANGUAGE plpgsql
-SECURITY DEFINER SET search_path FROM CURRENT AS $$
+-- References of points, bases and events, checked once a statement instead of once a row. Points, bases and sweeps are stored and deleted by
+-- those who have them to themselves, so that no row has to be locked for it; and events are told to sweeps that exist.
+
+CREATE FUNCTION require_base() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
-    PERFORM 1 FROM sweep WHERE id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
-    ORDER BY id FOR NO KEY UPDATE;
-
-    UPDATE sweep SET
-        version                 = version + 1,
-        points_queued           = points_queued + share.points * step.queued,
-        points_running          = points_running + share.points * step.running,
-        points_done             = points_done + share.points * step.done,
-        points_failed           = points_failed + share.points * step.failed,
-        points_cancelled        = points_cancelled + share.points * step.cancelled,
-        verifications_queued    = verifications_queued + share.verifications * step.queued,
-        verifications_running   = verifications_running + share.verifications * step.running,
-        verifications_done      = verifications_done + share.verifications * step.done,
-        verifications_failed    = verifications_failed + share.verifications * step.failed,
-        verifications_cancelled = verifications_cancelled + share.verifications * step.cancelled,
-        finished                = CASE
-            WHEN points_queued + points_running + verifications_queued + verifications_running
-                 + (share.points + share.verifications) * (step.queued + step.running) > 0
-            THEN NULL
-            ELSE coalesce(finished, NEW.changed)
-        END
-    FROM (SELECT sweep_id, count(*) FILTER (WHERE NOT verifies) AS points, count(*) FILTER (WHERE verifies) AS verifications
-          FROM point WHERE work_key = NEW.key GROUP BY sweep_id) AS share,
-         (SELECT of_cancelled,
-                 (after = 'queued')::int - (before = 'queued')::int       AS queued,
-                 (after = 'running')::int - (before = 'running')::int     AS running,
-                 (after = 'done')::int - (before = 'done')::int           AS done,
-                 (after = 'failed')::int - (before = 'failed')::int       AS failed,
-                 (after = 'cancelled')::int - (before = 'cancelled')::int AS cancelled
-          FROM (SELECT false AS of_cancelled, OLD.stage AS before, NEW.stage AS after
-                WHERE NEW.state <> OLD.state
-                UNION ALL
-                SELECT true, OLD.stage_of_cancelled, NEW.stage_of_cancelled
-                WHERE NEW.stage_of_cancelled <> OLD.stage_of_cancelled
-                   OR (NEW.state <> OLD.state AND NOT NEW.is_open)) AS stages) AS step
-    WHERE sweep.id = share.sweep_id AND sweep.cancelled = step.of_cancelled;
-
-    INSERT INTO event (sweep_id, seq, kind, work_key, at)
-    SELECT id, version,
-           CASE WHEN cancelled AND NEW.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE NEW.state END,
-           NEW.key, NEW.changed
-    FROM sweep
-    WHERE id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
-      AND CASE WHEN cancelled
-               THEN NEW.stage_of_cancelled <> OLD.stage_of_cancelled OR (NEW.state <> OLD.state AND NOT NEW.is_open)
-               ELSE NEW.state <> OLD.state
-          END;
-
-    UPDATE sweep SET version = version + 1
-    WHERE finished IS NOT NULL
-      AND id IN (SELECT sweep_id FROM point WHERE work_key = NEW.key)
-      AND EXISTS (SELECT 1 FROM event WHERE event.sweep_id = sweep.id AND event.seq = sweep.version);
+    IF EXISTS (SELECT 1 FROM (SELECT DISTINCT base FROM fresh WHERE base IS NOT NULL) AS used
+               WHERE NOT EXISTS (SELECT 1 FROM scenario WHERE hash = base)) THEN
+        RAISE EXCEPTION 'a work item changes a base that is not there' USING ERRCODE = 'foreign_key_violation';
+    END IF;
     RETURN NULL;
 END
 $$;
 
--- At the end of the transaction, unless that runs alone: the sweep's row is what all its workers wait for, and is locked for no longer
--- than a commit takes.
-CREATE CONSTRAINT TRIGGER work_changes_state AFTER UPDATE OF state, cancel_requested ON work
-DEFERRABLE INITIALLY DEFERRED FOR EACH ROW
-WHEN (NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled)
-EXECUTE FUNCTION tell_the_sweeps();
+CREATE TRIGGER work_has_its_base AFTER INSERT ON work REFERENCING NEW TABLE AS fresh
+FOR EACH STATEMENT EXECUTE FUNCTION require_base();
 
--- Listeners are notified when a transaction commits, once for each (store/src/notification.rs).
+CREATE FUNCTION keep_used_bases() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    IF EXISTS (SELECT 1 FROM gone JOIN work ON base = hash) THEN
+        RAISE EXCEPTION 'a base is deleted that a work item changes' USING ERRCODE = 'foreign_key_violation';
+    END IF;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER scenario_is_not_used AFTER DELETE ON scenario REFERENCING OLD TABLE AS gone
+FOR EACH STATEMENT EXECUTE FUNCTION keep_used_bases();
+
+-- Each row is looked up by an index, whatever the planner thinks of tables that have just grown. So in the functions that follow.
+CREATE FUNCTION require_sweep_and_work() RETURNS trigger LANGUAGE plpgsql
+SET plan_cache_mode = force_generic_plan SET enable_seqscan = off SET enable_hashjoin = off SET enable_mergejoin = off AS $$
+BEGIN
+    IF EXISTS (SELECT 1 FROM fresh WHERE NOT EXISTS (SELECT 1 FROM work WHERE key = work_key))
+       OR EXISTS (SELECT 1 FROM (SELECT DISTINCT sweep_id FROM fresh) AS used
+                  WHERE NOT EXISTS (SELECT 1 FROM sweep WHERE id = sweep_id)) THEN
+        RAISE EXCEPTION 'a point has a sweep or a work item that is not there' USING ERRCODE = 'foreign_key_violation';
+    END IF;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER point_has_its_sweep_and_work AFTER INSERT ON point REFERENCING NEW TABLE AS fresh
+FOR EACH STATEMENT EXECUTE FUNCTION require_sweep_and_work();
+
+CREATE FUNCTION keep_used_work() RETURNS trigger LANGUAGE plpgsql
+SET plan_cache_mode = force_generic_plan SET enable_seqscan = off SET enable_hashjoin = off SET enable_mergejoin = off AS $$
+BEGIN
+    IF EXISTS (SELECT 1 FROM gone JOIN point ON work_key = key) THEN
+        RAISE EXCEPTION 'a work item is deleted that a point has' USING ERRCODE = 'foreign_key_violation';
+    END IF;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER work_is_no_points AFTER DELETE ON work REFERENCING OLD TABLE AS gone
+FOR EACH STATEMENT EXECUTE FUNCTION keep_used_work();
+
+CREATE FUNCTION take_points_and_events_away() RETURNS trigger LANGUAGE plpgsql
+SET plan_cache_mode = force_generic_plan SET enable_seqscan = off SET enable_hashjoin = off SET enable_mergejoin = off AS $$
+BEGIN
+    DELETE FROM point USING gone WHERE sweep_id = id;
+    DELETE FROM event USING gone WHERE sweep_id = id;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER sweep_goes_with_its_points AFTER DELETE ON sweep REFERENCING OLD TABLE AS gone
+FOR EACH STATEMENT EXECUTE FUNCTION take_points_and_events_away();
+
+-- What a row names stays what it is.
+CREATE FUNCTION refuse_change() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    RAISE EXCEPTION 'what a row names is not changed' USING ERRCODE = 'foreign_key_violation';
+END
+$$;
+
+CREATE TRIGGER work_keeps_its_base BEFORE UPDATE OF key, base ON work FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
+CREATE TRIGGER point_keeps_its_sweep_and_work BEFORE UPDATE OF sweep_id, work_key ON point FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
+CREATE TRIGGER scenario_keeps_its_name BEFORE UPDATE OF hash ON scenario FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
+CREATE TRIGGER sweep_keeps_its_name BEFORE UPDATE OF id ON sweep FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
+CREATE TRIGGER event_keeps_its_sweep BEFORE UPDATE OF sweep_id ON event FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
+
+-- Writers of two kinds (store/src/engine/database.rs): what changes the state of work shares this lock, what changes several items,
+-- points or sweeps has it alone. The lock is nearly always free, and then asking for it is no statement of its own.
+CREATE FUNCTION share_the_writers_lock() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    IF NOT pg_try_advisory_xact_lock_shared(7237963465534699365) THEN
+        PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
+    END IF;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER work_is_written BEFORE INSERT OR DELETE OR UPDATE OF state, cancel_requested ON work
+FOR EACH STATEMENT EXECUTE FUNCTION share_the_writers_lock();
+
+-- A change of a work item's state has consequences for others: the turn of its owner, the counts, events and end of the sweeps that have it.
+-- These rows are few, and all workers change them: if each did so in its own transaction, all would wait for each other. So a transaction
+-- only notes what it changed, in a row of its own that is committed with the change, and these notes are applied in batches: by
+-- whoever has committed one, as long as nobody else is applying some (store/src/engine/postgres.rs). Alone, a
+-- change is applied before its client hears that it is made; of many at once the first applies its own, and the next all that came
+-- meanwhile. What a process that dies leaves behind, the next one applies.
+
+-- Changes of work items that have not been applied yet.
+CREATE TABLE transition (
+    -- In the order of the changes of one work item, whose row is locked from its change to its commit.
+    number                    BIGINT  NOT NULL GENERATED ALWAYS AS IDENTITY,
+    -- The transaction that made it. What is applied is deleted, and its remains in the index are passed over by this column
+    -- (`transitions_applied`).
+    transaction               XID8    NOT NULL DEFAULT pg_current_xact_id(),
+    work_key                  BYTEA   NOT NULL,
+    owner                     TEXT COLLATE "C" NOT NULL,
+    physics_version           BIGINT  NOT NULL,
+    -- As in the table `work`, before the change and after it.
+    state_before              TEXT COLLATE "C" NOT NULL,
+    state                     TEXT COLLATE "C" NOT NULL,
+    stage_before              TEXT COLLATE "C" NOT NULL,
+    stage                     TEXT COLLATE "C" NOT NULL,
+    stage_of_cancelled_before TEXT COLLATE "C" NOT NULL,
+    stage_of_cancelled        TEXT COLLATE "C" NOT NULL,
+    is_open                   BOOLEAN NOT NULL,
+    at                        BIGINT  NOT NULL
+) WITH (autovacuum_vacuum_scale_factor = 0, autovacuum_vacuum_threshold = 20000, autovacuum_vacuum_cost_delay = 0);
+
+CREATE INDEX transition_by_transaction ON transition (transaction);
+
+-- One row: the first transaction of which there may be transitions that have not been applied.
+CREATE TABLE transitions_applied (
+    up_to XID8 NOT NULL
+);
+
+INSERT INTO transitions_applied (up_to) VALUES ('0');
+
+-- The same, for a database that was restored from a dump as well: there transactions are counted anew.
+CREATE VIEW first_to_apply AS
+SELECT CASE WHEN up_to <= pg_snapshot_xmax(pg_current_snapshot()) THEN up_to ELSE '0' END AS transaction FROM transitions_applied;
+
+-- Before which there is nothing in an owner's queue, so that a claim does not go through all that the index still has of work that was
+-- claimed before. Raised with claims that are applied; given up where work may have come back before it. Without a row the whole
+-- queue is looked through.
+CREATE TABLE queue_start (
+    owner           TEXT COLLATE "C" NOT NULL,
+    physics_version BIGINT NOT NULL,
+    -- The priority, negative.
+    urgency         BIGINT NOT NULL,
+    vtime           BIGINT NOT NULL,
+    PRIMARY KEY (owner, physics_version)
+) WITH (fillfactor = 50);
+
+-- A worker's role may change work, and neither turns nor sweeps (deploy/postgres/worker-role.sql): what follows from a change of work is
+-- done in the name of the tables' owner.
+
+-- All that follows at once from a change of a work item. One trigger, before its row is written: columns that are generated, conditions of
+-- the table and conditions of triggers are prepared anew for each statement, which takes longer than all the rest of it, and a trigger
+-- after the change reads both rows again.
+CREATE FUNCTION follow_state() RETURNS trigger LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
+BEGIN
+    -- What the columns mean, the table says.
+    CASE NEW.state
+        WHEN 'queued', 'waiting' THEN NEW.stage := 'queued';
+        WHEN 'leased' THEN NEW.stage := 'running';
+        WHEN 'dead' THEN NEW.stage := 'failed';
+        WHEN 'done', 'failed', 'cancelled' THEN NEW.stage := NEW.state;
+        ELSE RAISE EXCEPTION 'no work item has this state' USING ERRCODE = 'check_violation';
+    END CASE;
+    NEW.is_open := NEW.stage IN ('queued', 'running');
+    NEW.stage_of_cancelled := CASE WHEN NEW.is_open AND NOT NEW.cancel_requested THEN 'cancelled' ELSE NEW.stage END;
+    IF TG_OP = 'INSERT' THEN
+        RETURN NEW;
+    END IF;
+    -- Work goes its ways and no others, whichever statement moves it.
+    IF NEW.state <> OLD.state AND NOT (CASE OLD.state
+           WHEN 'queued'  THEN NEW.state IN ('leased', 'done', 'failed', 'cancelled')
+           WHEN 'leased'  THEN NEW.state IN ('waiting', 'queued', 'done', 'failed', 'dead', 'cancelled')
+           WHEN 'waiting' THEN NEW.state IN ('queued', 'done', 'failed', 'cancelled')
+           ELSE NEW.state = 'queued'
+       END) THEN
+        RAISE EXCEPTION 'a work item cannot go from its state to that one';
+    END IF;
+    IF NEW.state <> OLD.state OR NEW.stage_of_cancelled <> OLD.stage_of_cancelled THEN
+        INSERT INTO transition (work_key, owner, physics_version, state_before, state, stage_before, stage,
+                                stage_of_cancelled_before, stage_of_cancelled, is_open, at)
+        VALUES (NEW.key, NEW.owner, NEW.physics_version, OLD.state, NEW.state, OLD.stage, NEW.stage,
+                OLD.stage_of_cancelled, NEW.stage_of_cancelled, NEW.is_open, NEW.changed);
+    END IF;
+    IF NEW.state = 'queued' AND NOT NEW.held AND (OLD.state <> 'queued' OR OLD.held) THEN
+        NOTIFY drillsweep_work;
+    END IF;
+    RETURN NEW;
+END
+$$;
+
+CREATE TRIGGER work_changes BEFORE UPDATE OF state, held, cancel_requested ON work
+FOR EACH ROW EXECUTE FUNCTION follow_state();
+
+-- What is submitted is queued, and has all this by default.
+CREATE TRIGGER work_begins BEFORE INSERT ON work FOR EACH ROW
+WHEN (NEW.state <> 'queued' OR NEW.cancel_requested OR NEW.stage <> 'queued' OR NOT NEW.is_open OR NEW.stage_of_cancelled <> 'cancelled')
+EXECUTE FUNCTION follow_state();
+
+-- Applies all transitions that are committed, and those of its own transaction. Nobody changes turns and sweeps beside it: all who do so
+-- hold the lock that it takes.
+--
+-- A change reaches every sweep that has the work item, in the order of the changes: counts, version, end, event. A sweep may have the
+-- same work item at several points, and verify points by it; it is finished when neither its points nor its reference runs have an
+-- open one. A cancelled sweep counts by `stage_of_cancelled`, and of what others compute it hears only the outcome. The version
+-- of a finished sweep is one more than the number of its last event: who has seen that event, and not the end, is told from
+-- who has seen both.
+--
+-- Owners pay for the turns that they have taken. Idle time is not saved up: who comes back has missed all turns but the one before the
+-- latest.
+--
+-- Each row is looked up by an index, whatever the planner thinks of tables that have just grown.
+CREATE FUNCTION apply_pending_transitions() RETURNS void LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT
+SET plan_cache_mode = force_generic_plan SET enable_seqscan = off SET enable_hashjoin = off SET enable_mergejoin = off AS $$
+DECLARE
+    first_pending xid8;
+    next_pending  xid8;
+    is_alone      boolean := coalesce(current_setting('drillsweep.alone', true) = 'on', false);
+BEGIN
+    PERFORM pg_advisory_xact_lock(7237963465534699366);
+    IF is_alone THEN
+        -- Who is alone may put work anywhere.
+        DELETE FROM queue_start;
+    END IF;
+    -- All transactions before `next_pending` have ended, and are seen by the statement that follows.
+    SELECT transaction, pg_snapshot_xmin(pg_current_snapshot()) INTO first_pending, next_pending FROM first_to_apply;
+
+    WITH pending AS MATERIALIZED (
+        DELETE FROM transition WHERE transaction >= first_pending RETURNING *),
+    turn AS (
+        UPDATE owner_turn SET vtime = greatest(vtime, (SELECT max(vtime) FROM owner_turn) - 1000) + 1000 * taken.turns
+        FROM (SELECT owner, count(*) AS turns FROM pending
+              WHERE state = 'leased' AND state_before <> 'leased' GROUP BY owner) AS taken
+        WHERE owner_turn.owner = taken.owner),
+    restart AS (
+        DELETE FROM queue_start WHERE owner IN (SELECT owner FROM pending WHERE state = 'queued')),
+    start AS (
+        INSERT INTO queue_start AS earlier (owner, physics_version, urgency, vtime)
+        SELECT taken.owner, taken.physics_version, ready.urgency, ready.vtime
+        FROM (SELECT DISTINCT owner, physics_version FROM pending
+              WHERE state = 'leased' AND NOT is_alone AND owner NOT IN (SELECT owner FROM pending WHERE state = 'queued')) AS taken
+        LEFT JOIN queue_start AS known ON known.owner = taken.owner AND known.physics_version = taken.physics_version
+        CROSS JOIN LATERAL (
+            SELECT -priority AS urgency, vtime FROM work
+            WHERE state = 'queued' AND NOT held AND physics_version = taken.physics_version AND owner = taken.owner
+              AND (-priority, vtime) >= (coalesce(known.urgency, -9223372036854775808), coalesce(known.vtime, -9223372036854775808))
+            ORDER BY -priority, vtime LIMIT 1) AS ready
+        ON CONFLICT (owner, physics_version) DO UPDATE SET urgency = excluded.urgency, vtime = excluded.vtime
+        WHERE (earlier.urgency, earlier.vtime) <> (excluded.urgency, excluded.vtime)),
+    heard AS (
+        SELECT sweep.id, sweep.version, sweep.finished, pending.number, pending.work_key, pending.at,
+               CASE WHEN sweep.cancelled AND pending.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE pending.state END AS kind,
+               share.points, share.verifications, step.before, step.after,
+               points_queued + points_running + verifications_queued + verifications_running AS open_before,
+               (share.points + share.verifications)
+                   * ((step.after IN ('queued', 'running'))::int - (step.before IN ('queued', 'running'))::int) AS opened
+        FROM pending
+        CROSS JOIN LATERAL (
+            SELECT sweep_id, count(*) FILTER (WHERE NOT verifies) AS points, count(*) FILTER (WHERE verifies) AS verifications
+            FROM point WHERE point.work_key = pending.work_key GROUP BY sweep_id) AS share
+        JOIN sweep ON sweep.id = share.sweep_id
+        CROSS JOIN LATERAL (
+            SELECT CASE WHEN sweep.cancelled THEN pending.stage_of_cancelled_before ELSE pending.stage_before END AS before,
+                   CASE WHEN sweep.cancelled THEN pending.stage_of_cancelled ELSE pending.stage END AS after) AS step
+        WHERE CASE WHEN sweep.cancelled
+                   THEN step.after <> step.before OR (pending.state <> pending.state_before AND NOT pending.is_open)
+                   ELSE pending.state <> pending.state_before
+              END),
+    counted AS (
+        SELECT *, open_before + sum(opened) OVER (PARTITION BY id ORDER BY number) AS open_after FROM heard),
+    numbered AS (
+        SELECT *, version + sum(CASE open_after WHEN 0 THEN 2 ELSE 1 END) OVER (PARTITION BY id ORDER BY number) AS version_after,
+               open_after = 0 AND lag(open_after, 1, open_before::numeric) OVER (PARTITION BY id ORDER BY number) > 0 AS is_end
+        FROM counted),
+    told AS (
+        INSERT INTO event (sweep_id, seq, kind, work_key, at)
+        SELECT id, CASE open_after WHEN 0 THEN version_after - 1 ELSE version_after END, kind, work_key, at FROM numbered)
+    UPDATE sweep SET
+        version                 = step.version,
+        points_queued           = sweep.points_queued + step.points_queued,
+        points_running          = sweep.points_running + step.points_running,
+        points_done             = sweep.points_done + step.points_done,
+        points_failed           = sweep.points_failed + step.points_failed,
+        points_cancelled        = sweep.points_cancelled + step.points_cancelled,
+        verifications_queued    = sweep.verifications_queued + step.verifications_queued,
+        verifications_running   = sweep.verifications_running + step.verifications_running,
+        verifications_done      = sweep.verifications_done + step.verifications_done,
+        verifications_failed    = sweep.verifications_failed + step.verifications_failed,
+        verifications_cancelled = sweep.verifications_cancelled + step.verifications_cancelled,
+        finished                = CASE WHEN step.open_after > 0 THEN NULL ELSE coalesce(step.ended, finished, step.last) END
+    FROM (SELECT id, max(version_after) AS version, max(open_before) + sum(opened) AS open_after,
+                 max(at) FILTER (WHERE is_end) AS ended, max(at) AS last,
+                 sum(points * ((after = 'queued')::int - (before = 'queued')::int)) AS points_queued,
+                 sum(points * ((after = 'running')::int - (before = 'running')::int)) AS points_running,
+                 sum(points * ((after = 'done')::int - (before = 'done')::int)) AS points_done,
+                 sum(points * ((after = 'failed')::int - (before = 'failed')::int)) AS points_failed,
+                 sum(points * ((after = 'cancelled')::int - (before = 'cancelled')::int)) AS points_cancelled,
+                 sum(verifications * ((after = 'queued')::int - (before = 'queued')::int)) AS verifications_queued,
+                 sum(verifications * ((after = 'running')::int - (before = 'running')::int)) AS verifications_running,
+                 sum(verifications * ((after = 'done')::int - (before = 'done')::int)) AS verifications_done,
+                 sum(verifications * ((after = 'failed')::int - (before = 'failed')::int)) AS verifications_failed,
+                 sum(verifications * ((after = 'cancelled')::int - (before = 'cancelled')::int)) AS verifications_cancelled
+          FROM numbered GROUP BY id) AS step
+    WHERE sweep.id = step.id;
+
+    UPDATE transitions_applied SET up_to = next_pending WHERE up_to <> next_pending;
+END
+$$;
+
+-- Applies what is pending, unless somebody else does so at this moment. Gives whether it has done so: then something may have come
+-- meanwhile that is left to it, and this is to be called again once it is committed. Nobody waits for the disk: what is applied and then
+-- forgotten by a crash is pending again.
+CREATE FUNCTION apply_transitions() RETURNS boolean LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
+BEGIN
+    IF NOT EXISTS (SELECT 1 FROM transition WHERE transaction >= (SELECT transaction FROM first_to_apply))
+       OR NOT pg_try_advisory_xact_lock(7237963465534699366) THEN
+        RETURN false;
+    END IF;
+    -- A batch costs much the same whether it is one change or twenty: where many are at work, what they commit within a moment goes with it.
+    IF EXISTS (SELECT 1 FROM transition WHERE transaction >= (SELECT transaction FROM first_to_apply) OFFSET 3) THEN
+        PERFORM pg_sleep(0.005);
+    END IF;
+    PERFORM set_config('synchronous_commit', 'off', true);
+    PERFORM apply_pending_transitions();
+    RETURN true;
+END
+$$;
+
+-- Begins a transaction that has work, points and sweeps to itself. All changes before it are applied, and its own with each of its
+-- statements.
+CREATE FUNCTION write_alone() RETURNS void LANGUAGE plpgsql AS $$
+BEGIN
+    PERFORM pg_advisory_xact_lock(7237963465534699365);
+    PERFORM set_config('drillsweep.alone', 'on', true);
+    PERFORM apply_pending_transitions();
+END
+$$;
+
+CREATE FUNCTION apply_own_transitions() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    IF current_setting('drillsweep.alone', true) = 'on' THEN
+        PERFORM apply_pending_transitions();
+    END IF;
+    RETURN NULL;
+END
+$$;
+
+CREATE TRIGGER work_is_written_alone AFTER UPDATE OF state, cancel_requested ON work FOR EACH STATEMENT EXECUTE FUNCTION apply_own_transitions();
+
+-- Whether there are transitions that have not been applied.
+CREATE FUNCTION transitions_are_pending() RETURNS boolean LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
+BEGIN
+    RETURN EXISTS (SELECT 1 FROM transition WHERE transaction >= (SELECT transaction FROM first_to_apply));
+END
+$$;
+
+-- Applies what is pending, as `apply_transitions` does; whoever calls it has the lock of those who apply. Gives whether many were at work.
+-- A batch of changes costs much the same whether it is a dozen or two: where so many come while one is applied, the next waits longer for
+-- more. With 200 workers on two cores a few hundredths more points are finished, and results wait no longer for their answer.
+CREATE FUNCTION apply_transitions_of_all() RETURNS boolean LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
+DECLARE
+    are_many      boolean := EXISTS (SELECT 1 FROM transition WHERE transaction >= (SELECT transaction FROM first_to_apply) OFFSET 3);
+    are_very_many boolean := are_many
+        AND EXISTS (SELECT 1 FROM transition WHERE transaction >= (SELECT transaction FROM first_to_apply) OFFSET 12);
+BEGIN
+    IF are_many THEN
+        PERFORM pg_sleep(CASE WHEN are_very_many THEN 0.02 ELSE 0.01 END);
+    END IF;
+    PERFORM set_config('synchronous_commit', 'off', true);
+    PERFORM apply_pending_transitions();
+    RETURN are_many;
+END
+$$;
+
+-- Hands out the next work item: of the owner whose turn it is the most urgent, of these the first in the order asked for. What others
+-- are changing is skipped, and an owner with nothing else. The owners are gone through in the order of their turns, as far as the first
+-- that has something: the order is that of the inner query. It takes the writers' lock itself, before it looks, and begins where the queues
+-- do; where nothing is found, at their very beginning. A function, since its plan is kept.
+CREATE FUNCTION claim_work(claiming_worker text, length_of_lease bigint, version_of_numbers bigint)
+RETURNS TABLE (key bytea, fencing_token bigint, base text, changes text, checkpoint text) LANGUAGE plpgsql AS $$
+#variable_conflict use_column
+DECLARE
+    all_of_it boolean;
+BEGIN
+    PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
+    FOREACH all_of_it IN ARRAY ARRAY[false, true] LOOP
+        RETURN QUERY
+        WITH picked AS (
+            SELECT ready.key, now
+            FROM (SELECT owner_turn.owner, coalesce(urgency, -9223372036854775808) AS urgency,
+                         coalesce(queue_start.vtime, -9223372036854775808) AS vtime
+                  FROM owner_turn
+                  LEFT JOIN queue_start ON queue_start.owner = owner_turn.owner AND physics_version = version_of_numbers AND NOT all_of_it
+                  ORDER BY owner_turn.vtime, owner_turn.owner) AS turn
+            CROSS JOIN LATERAL (
+                SELECT key FROM work
+                WHERE state = 'queued' AND NOT held AND physics_version = version_of_numbers AND work.owner = turn.owner
+                  AND (-priority, work.vtime) >= (turn.urgency, turn.vtime)
+                ORDER BY -priority, work.vtime, key LIMIT 1
+                FOR NO KEY UPDATE SKIP LOCKED) AS ready
+            CROSS JOIN clock
+            LIMIT 1)
+        UPDATE work SET
+            state = 'leased', fencing_token = fencing_token + 1, attempts = attempts + 1, progress = 0,
+            worker_note = NULL, lease_owner = claiming_worker, lease_until = now + length_of_lease,
+            lease_ms = length_of_lease, changed = now
+        FROM picked
+        WHERE work.key = picked.key
+        RETURNING work.key, work.fencing_token, (SELECT text FROM scenario WHERE hash = work.base), work.changes, work.checkpoint;
+        IF FOUND THEN
+            RETURN;
+        END IF;
+    END LOOP;
+END
+$$;
+
+-- Ends a lease with a result, if that is the first of its work item. Gives what came of it: 'done'; 'lost', the lease; 'earlier' if there
+-- is a result already; 'missing' and the name of a blob that is not reserved. Nothing is written but for the first.
+CREATE FUNCTION finish_work(
+    work_item bytea, token bigint, worker text, new_summary text, new_provenance text, new_artifacts json
+) RETURNS text LANGUAGE plpgsql AS $$
+DECLARE
+    missing text;
+    moment bigint;
+BEGIN
+    IF NOT pg_try_advisory_xact_lock_shared(7237963465534699365) THEN
+        PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
+    END IF;
+    SELECT now, (SELECT blob FROM json_to_recordset(new_artifacts) AS item (blob text)
+                 WHERE NOT EXISTS (SELECT 1 FROM upload WHERE upload.blob = item.blob AND expires > now) LIMIT 1)
+    FROM clock INTO moment, missing;
+    UPDATE work SET
+        state = 'done', progress = 1, error = NULL, checkpoint = NULL, lease_until = NULL, changed = moment
+    WHERE key = work_item AND fencing_token = token AND lease_owner = worker AND state = 'leased' AND missing IS NULL
+      AND NOT EXISTS (SELECT 1 FROM result WHERE work_key = work_item);
+    IF NOT FOUND THEN
+        RETURN CASE
+            WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work_item) THEN 'earlier'
+            WHEN EXISTS (SELECT 1 FROM work WHERE key = work_item AND fencing_token = token AND lease_owner = worker AND state = 'leased')
+            THEN 'missing ' || missing
+            ELSE 'lost'
+        END;
+    END IF;
+    INSERT INTO result (work_key, summary, provenance, created) VALUES (work_item, new_summary, new_provenance, moment);
+    INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count)
+    SELECT work_item, name, media_type, blob, bytes, row_count
+    FROM json_to_recordset(new_artifacts) AS item (name text, media_type text, blob text, bytes bigint, row_count bigint);
+    RETURN 'done';
+END
+$$;
+
+-- Ends a lease with a result, as `finish_work`, and hands the next work item to the same worker, as `claim_work`, in one transaction; then
+-- does what follows from both, as far as nobody else is at it. One message instead of four. It commits, and so is called by itself
+-- and not in a transaction.
+--
+-- Gives what came of the result, and where that is 'done' the next work item, if one is ready.
+CREATE PROCEDURE finish_and_claim(
+    work_item bytea, token bigint, worker text, new_summary text, new_provenance text, new_artifacts json,
+    length_of_lease bigint, version_of_numbers bigint,
+    INOUT outcome text, INOUT key bytea, INOUT fencing_token bigint, INOUT base text, INOUT changes text, INOUT checkpoint text
+) LANGUAGE plpgsql AS $$
+DECLARE
+    are_many boolean;
+BEGIN
+    outcome := finish_work(work_item, token, worker, new_summary, new_provenance, new_artifacts);
+    IF outcome <> 'done' THEN
+        RETURN;
+    END IF;
+    SELECT * FROM claim_work(worker, length_of_lease, version_of_numbers) INTO key, fencing_token, base, changes, checkpoint;
+    COMMIT;
+    -- Its own transitions are pending, unless somebody has applied them already.
+    WHILE pg_try_advisory_xact_lock(7237963465534699366) LOOP
+        BEGIN
+            are_many := apply_transitions_of_all();
+        EXCEPTION WHEN OTHERS THEN
+            -- The result stands nevertheless, and the next one that comes applies what follows from it.
+            RAISE WARNING 'what follows from changes of points is left to others: %', SQLERRM;
+            RETURN;
+        END;
+        COMMIT;
+        IF are_many THEN
+            -- So that another one takes over: this one's worker waits for its work item.
+            PERFORM pg_sleep(0.001);
+        END IF;
+        EXIT WHEN NOT transitions_are_pending();
+    END LOOP;
+END
+$$;
+
+-- One row: when somebody began to look last. Whoever claims looks once a second whether leases have run out or retries are due, and reads
+-- all leases for it. Of many processes one does so for all.
+CREATE TABLE expiry_look (
+    at BIGINT NOT NULL
+);
+
+INSERT INTO expiry_look (at) VALUES (0);
+
+-- Whether somebody has to look, who then is the one that asked: not if one has begun to within the pause. By a clock that was set back it is
+-- time to look.
+CREATE FUNCTION begin_to_look(pause bigint) RETURNS boolean LANGUAGE plpgsql
+SECURITY DEFINER SET search_path FROM CURRENT AS $$
+BEGIN
+    IF EXISTS (SELECT 1 FROM expiry_look CROSS JOIN clock WHERE at > now - pause AND at <= now) THEN
+        RETURN false;
+    END IF;
+    PERFORM 1 FROM expiry_look FOR UPDATE SKIP LOCKED;
+    IF NOT FOUND THEN
+        RETURN false;
+    END IF;
+    UPDATE expiry_look SET at = now FROM clock;
+    RETURN true;
+END
+$$;
+
+-- Listeners are notified when a transaction commits, once for each (store/src/engine/notification.rs).
 CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
     NOTIFY drillsweep_work;
@@ -332,10 +727,6 @@ END
 $$;
 
 CREATE TRIGGER work_is_inserted AFTER INSERT ON work FOR EACH STATEMENT EXECUTE FUNCTION tell_of_work();
-
-CREATE TRIGGER work_is_queued AFTER UPDATE OF state, held ON work FOR EACH ROW
-WHEN (NEW.state = 'queued' AND NOT NEW.held AND (OLD.state <> 'queued' OR OLD.held))
-EXECUTE FUNCTION tell_of_work();
 
 CREATE FUNCTION tell_of_sweeps() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
@@ -394,6 +785,37 @@ CREATE TABLE removal (
     expires BIGINT NOT NULL
 );
 
+-- Reserves a blob for a row to come, unless it is being deleted: it is not deleted until then. Who has reserved it for longer keeps it. Gives
+-- the blob; nothing if it is being deleted.
+CREATE FUNCTION reserve_blob(name text, length_of_reservation bigint) RETURNS SETOF text LANGUAGE plpgsql AS $$
+BEGIN
+    PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
+    RETURN QUERY
+    INSERT INTO upload (blob, expires)
+    SELECT name, now + length_of_reservation FROM clock
+    WHERE NOT EXISTS (SELECT 1 FROM removal WHERE removal.blob = name AND expires > now)
+    ON CONFLICT (blob) DO UPDATE SET expires = greatest(upload.expires, excluded.expires)
+    RETURNING blob;
+END
+$$;
+
+-- The same for all of a JSON array's. Gives those that are reserved.
+CREATE FUNCTION reserve_blobs(names json, length_of_reservation bigint) RETURNS SETOF text LANGUAGE plpgsql AS $$
+BEGIN
+    IF NOT pg_try_advisory_xact_lock_shared(7237963465534699365) THEN
+        PERFORM pg_advisory_xact_lock_shared(7237963465534699365);
+    END IF;
+    -- In one order, so that no two wait for each other.
+    RETURN QUERY
+    INSERT INTO upload (blob, expires)
+    SELECT name, now + length_of_reservation FROM clock CROSS JOIN json_array_elements_text(names) AS wanted (name)
+    WHERE NOT EXISTS (SELECT 1 FROM removal WHERE removal.blob = name AND expires > now)
+    ORDER BY name
+    ON CONFLICT (blob) DO UPDATE SET expires = greatest(upload.expires, excluded.expires)
+    RETURNING blob;
+END
+$$;
+
 -- Who computes, and who may ask.
 
 CREATE TABLE worker (
@@ -440,6 +862,17 @@ CREATE TABLE token (
     -- To within an hour.
     last_used BIGINT
 );
+
+-- Browsers that have logged in by a token. A session is valid as long as its token is, and not after it has expired itself.
+CREATE TABLE session (
+    -- BLAKE3 of what the browser keeps, which has 256 random bits.
+    hash     BYTEA NOT NULL PRIMARY KEY,
+    token_id TEXT COLLATE "C" NOT NULL REFERENCES token (id) ON DELETE CASCADE,
+    created  BIGINT NOT NULL,
+    expires  BIGINT NOT NULL
+);
+
+CREATE INDEX session_by_token ON session (token_id);
 
 -- The clock: milliseconds since the epoch, the same throughout a statement. Statements read the time from here and from nowhere else.
 CREATE VIEW clock AS SELECT floor(extract(epoch FROM statement_timestamp()) * 1000)::bigint AS now;

@@ -67,7 +67,7 @@ CREATE TABLE appended (
     PRIMARY KEY (sweep_id, number)
 ) STRICT, WITHOUT ROWID;
 
--- Points, and beside them the reference runs that verify some: cancelling, pausing, retrying, priority and retention go by the
+-- Points, and next to them the reference runs that verify some: cancelling, pausing, retrying, priority and retention go by the
 -- work behind a row, and hold for both. Counts and listings tell them apart by `verifies`.
 CREATE TABLE point (
     sweep_id   TEXT    NOT NULL REFERENCES sweep (id) ON DELETE CASCADE,
@@ -113,7 +113,7 @@ CREATE TABLE work (
     physics_version  INTEGER NOT NULL,
     -- In whose turn it is handed out.
     owner            TEXT    NOT NULL,
-    -- Which states there are, and which ways from one to another, is told by `TRANSITIONS` in store/src/state.rs.
+    -- Which states there are, and which ways from one to another, is told by `TRANSITIONS` in store/src/work/state.rs.
     state            TEXT    NOT NULL CHECK (state IN ('waiting', 'queued', 'leased', 'done', 'failed', 'dead', 'cancelled')),
     -- How the sweeps that have it count it.
     stage            TEXT    NOT NULL GENERATED ALWAYS AS (
@@ -158,7 +158,9 @@ CREATE TABLE work (
     checkpoint       TEXT,
     base             BLOB REFERENCES scenario (hash),
     -- What the work item has in place of the base's values: a JSON object by path.
-    changes          TEXT    NOT NULL DEFAULT '{}'
+    changes          TEXT    NOT NULL DEFAULT '{}',
+    -- What is known of the worker that has the work, should it be heard of no more: how full its memory was, or how its process ended.
+    worker_note      TEXT
 ) STRICT;
 
 -- Only the rows that a statement looks for: these indexes stay small however many points are finished.
@@ -308,6 +310,19 @@ CREATE TABLE artifact (
 
 CREATE INDEX artifact_by_blob ON artifact (blob);
 
+-- Blobs that are being written, or found to be there, for a row to come: they are not deleted before it is there. A row stays until it
+-- has run out, for another worker may have reserved the same blob.
+CREATE TABLE upload (
+    blob    TEXT    NOT NULL PRIMARY KEY,
+    expires INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+
+-- Blobs that are being deleted: nobody reserves one meanwhile.
+CREATE TABLE removal (
+    blob    TEXT    NOT NULL PRIMARY KEY,
+    expires INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+
 -- Who computes, and who may ask.
 
 CREATE TABLE worker (
@@ -354,6 +369,17 @@ CREATE TABLE token (
     -- To within an hour.
     last_used INTEGER
 ) STRICT;
+
+-- Browsers that have logged in by a token. A session is valid as long as its token is, and not after it has expired itself.
+CREATE TABLE session (
+    -- BLAKE3 of what the browser keeps, which has 256 random bits.
+    hash     BLOB NOT NULL PRIMARY KEY,
+    token_id TEXT NOT NULL REFERENCES token (id) ON DELETE CASCADE,
+    created  INTEGER NOT NULL,
+    expires  INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE INDEX session_by_token ON session (token_id);
 
 -- The clock: milliseconds since the epoch. Statements read the time from here and from nowhere else.
 CREATE VIEW clock AS SELECT CAST((julianday('now') - 2440587.5) * 86400000.0 AS INTEGER) AS now;

@@ -5,8 +5,8 @@
 
 mod answer;
 mod app;
-mod collect;
 mod exposition;
+mod garbage;
 mod guard;
 mod listen;
 #[cfg(feature = "openapi")]
@@ -18,7 +18,7 @@ mod serve;
 pub use app::Config;
 pub use app::expansions::ExpansionLimits;
 pub use app::limit::OwnerLimits;
-pub use app::retain::Retaining;
+pub use app::retention::RetentionConfig;
 pub use exposition::Exposition;
 pub use listen::ConnectionLimits;
 #[cfg(feature = "openapi")]

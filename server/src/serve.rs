@@ -11,7 +11,7 @@ use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
 
 use crate::app::{App, Config};
-use crate::collect::collect;
+use crate::garbage::collect_garbage;
 use crate::listen::{ConnectionCounts, serve_connections};
 use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
@@ -106,7 +106,7 @@ async fn serve_until_drained(
     let mut stopped = stopping.clone();
     let app = App::new(store, config, stopping);
     let reaper = tokio::spawn(reap_expired_leases(app.clone()));
-    let collector = tokio::spawn(collect(app.clone()));
+    let collector = tokio::spawn(collect_garbage(app.clone()));
     let observed = listeners.metrics.map(|listener| {
         let routes = metrics::router(app.clone());
         let limits = app.config.connections.clone();

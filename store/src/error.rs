@@ -3,11 +3,12 @@
 use std::error::Error as _;
 use std::io::{self, ErrorKind};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use object_store::client::HttpError;
 use sqlx::migrate::MigrateError;
 
-use crate::blob::{BlobId, untrusted_certificate};
+use crate::blob_id::BlobId;
 
 /// The store's results.
 pub type Result<T> = std::result::Result<T, StoreError>;
@@ -15,7 +16,7 @@ pub type Result<T> = std::result::Result<T, StoreError>;
 /// Error of the store.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The database failed or is busy beyond its patience.
+    /// The database failed or is busy beyond the timeout.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
     /// The database's server has a certificate of an authority that is not trusted, of another name, or out of date.
@@ -26,7 +27,12 @@ pub enum StoreError {
     Untrusted(rustls::Error),
     /// The schema could not be brought up to date.
     #[error("database schema: {0}")]
-    Migration(#[from] MigrateError),
+    Migration(#[source] MigrateError),
+    /// Another version of this program made the schema: its migrations are not those of this one.
+    #[error(
+        "database schema: another version of drillsweep made it, and this one does not read it ({0}); start with a new database, or use that version"
+    )]
+    OtherSchema(#[source] MigrateError),
     /// The object store failed.
     #[error("object store: {0}")]
     Blob(#[source] object_store::Error),
@@ -169,6 +175,17 @@ impl StoreError {
     }
 }
 
+impl From<MigrateError> for StoreError {
+    fn from(error: MigrateError) -> Self {
+        match error {
+            MigrateError::VersionMismatch(_) | MigrateError::VersionMissing(_) => {
+                StoreError::OtherSchema(error)
+            }
+            error => StoreError::Migration(error),
+        }
+    }
+}
+
 impl From<object_store::Error> for StoreError {
     fn from(error: object_store::Error) -> Self {
         match untrusted_certificate(&error) {
@@ -176,6 +193,35 @@ impl From<object_store::Error> for StoreError {
             None => StoreError::Blob(error),
         }
     }
+}
+
+/// Here and not with the type, since errors name blobs.
+impl FromStr for BlobId {
+    type Err = StoreError;
+
+    fn from_str(text: &str) -> Result<Self> {
+        blake3::Hash::from_hex(text)
+            .map(BlobId::from)
+            .map_err(|_| StoreError::Corrupt(format!("blob id {text:?}")))
+    }
+}
+
+/// Why a server's certificate was not accepted, where that is behind an error.
+pub(crate) fn untrusted_certificate<'e>(
+    error: &'e (dyn std::error::Error + 'static),
+) -> Option<&'e rustls::Error> {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if let Some(refused @ rustls::Error::InvalidCertificate(_)) = error.downcast_ref() {
+            return Some(refused);
+        }
+        // An error of input and output names the source of what it wraps, and not what it wraps.
+        cause = match error.downcast_ref::<io::Error>().and_then(io::Error::get_ref) {
+            Some(wrapped) => Some(wrapped),
+            None => error.source(),
+        };
+    }
+    None
 }
 
 /// Whether a database may do a moment later what it did not now.

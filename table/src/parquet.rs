@@ -10,25 +10,21 @@ use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use ::parquet::schema::types::{ColumnPath, Type};
 
+use self::format::{ROW_GROUP, UNIT_PREFIX};
 use crate::error::TableError;
 use crate::source::{Sink, Source};
 use crate::table::{Column, Table};
 
+mod format;
 mod read;
 
 pub use read::{Cut, FOOTER_END, ReadAt, StoredTable, memory, read};
-
-/// Rows of a row group at most.
-const ROW_GROUP: usize = 10_000;
 
 /// Bytes of a row group at most, before compression: what writing or reading a table of many columns takes at once.
 const ROW_GROUP_BYTES: usize = 32 << 20;
 
 /// Bytes of memory that a [`Writer`] takes at most, besides its footer.
 pub const MEMORY_OF_WRITER: u64 = ROW_GROUP_BYTES as u64;
-
-/// Prefix of the metadata keys that hold units.
-const UNIT_PREFIX: &str = "unit.";
 
 /// A table as Parquet, without its attributes. Every column is required there: a missing number is NaN (whole numbers of which one is
 /// missing become numbers of double precision), a missing text is empty. The same table gives the same bytes.

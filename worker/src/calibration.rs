@@ -7,7 +7,8 @@ use drillsweep_sim::statics::Equilibrium;
 use drillsweep_sim::study::plan::{MachineSpeed, RunTime, calibration_runs};
 use drillsweep_sim::transient::{Outcome, Transient};
 
-use crate::compute::{ComputeError, Stopwatch};
+use crate::error::ComputeError;
+use crate::stopwatch::Stopwatch;
 
 /// The scenario that a machine is measured with.
 const BASE: &str = "paper-200m";

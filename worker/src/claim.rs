@@ -13,7 +13,7 @@ use drillsweep_sim::control::Control;
 use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
     BlobId, Claim, Finished, Lease, NamedFile, NewArtifact, NewResult, Renewal, Role, Store, StoreConfig,
-    StoreError, WorkerRecord, patiently,
+    StoreError, WorkerRecord, with_backoff,
 };
 use jiff::Timestamp;
 use prometheus_client::registry::Registry;
@@ -23,7 +23,8 @@ use tracing::Instrument as _;
 
 use crate::artifact::EncodedArtifact;
 use crate::calibration::calibrate;
-use crate::compute::{Computation, ComputeError, compute_from, simulated_time_total};
+use crate::compute::{Computation, compute_from, simulated_time_total};
+use crate::error::ComputeError;
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 use crate::memory::Memory;
 use crate::metrics::{Metrics, Outcome};
@@ -147,7 +148,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
         None => stop,
     };
     let id = format!("worker-{}", uuid::Uuid::now_v7().simple());
-    let store = patiently(|| Store::open(&config.store)).await?;
+    let store = with_backoff(|| Store::open(&config.store)).await?;
     store.check_certificate().await?;
     let record = WorkerRecord {
         id: id.clone(),
@@ -159,7 +160,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
         last_seen: 0,
     };
     // Before the first claim, so that who holds a point can always be found.
-    patiently(|| store.register_worker(&record)).await?;
+    with_backoff(|| store.register_worker(&record)).await?;
     keep_speed(&store, &record.host).await;
     let metrics = Metrics::default();
     if let Some(registry) = &config.registry {

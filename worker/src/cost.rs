@@ -10,7 +10,8 @@ use drillsweep_sim::study::plan::MachineSpeed;
 use drillsweep_sim::transient::{Outcome, Transient};
 use rayon::prelude::*;
 
-use crate::compute::{ComputeError, Stopwatch};
+use crate::error::ComputeError;
+use crate::stopwatch::Stopwatch;
 
 /// Runs the scenario's cost study (`scenario.cost_study`, or the usual one where that is absent). Progress on `control`
 /// counts the simulated time of all runs, [`study_time`] in all.

@@ -1,37 +1,18 @@
 //! Results of a cost study, for people: a text for terminals, a table, and which error a chart shows.
 
+mod digits;
 mod measure;
 mod summary;
 mod table;
 mod text;
 
+pub use digits::{step_text, three_digits};
 pub use measure::Measure;
 pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_table, summary_text};
 pub use table::table;
 pub use text::text;
 
 pub use drillsweep_sim::study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
-
-/// A step in the unit that reads best, to three digits: `1 ms`, `0.25 ms`, `58.8 µs`.
-pub fn step_text(step: f64) -> String {
-    let (value, unit) = match step {
-        step if step >= 1.0 => (step, "s"),
-        step if step >= 9.995e-5 => (step * 1e3, "ms"),
-        step => (step * 1e6, "µs"),
-    };
-    format!("{} {unit}", three_digits(value))
-}
-
-/// A number to three digits, without zeros at the end.
-pub fn three_digits(value: f64) -> String {
-    let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
-    let decimals = usize::try_from(3 - whole_digits).unwrap_or(0).min(12);
-    let text = format!("{value:.decimals$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -9,8 +9,8 @@ use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Serialize;
 
+use super::digits::{step_text, three_digits};
 use super::text::{Cells, aligned, four_digits, percent, signed_percent};
-use super::{step_text, three_digits};
 
 /// One line of one scenario's study.
 #[derive(Debug, Clone, PartialEq, Serialize)]

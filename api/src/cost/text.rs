@@ -10,7 +10,7 @@ use drillsweep_sim::study::cost::{
 
 use drillsweep_sim::transient::MotionRegime;
 
-use super::{step_text, three_digits};
+use super::digits::{step_text, three_digits};
 
 /// Text of a cell without a value.
 const ABSENT: &str = "-";

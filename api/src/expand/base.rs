@@ -4,12 +4,13 @@ use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest, unknown_
 use drillsweep_sim::admission::validate;
 use indexmap::IndexSet;
 
-use super::Interruption;
 use super::expansion::{number, set_number};
+use super::interruption::Interruption;
 use super::layout::{Layout, axis_pointer};
 use super::problems::{Found, Written};
+use crate::axis::AxisName;
 use crate::problem::ProblemDetails;
-use crate::request::{AxisName, Design, SweepRequest};
+use crate::request::{Design, SweepRequest};
 
 /// The scenario that the axes are applied to: preset or scenario, with the changes of `set`.
 ///

@@ -6,8 +6,8 @@ use drillsweep_sim::canonical::canonical_json;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
+use crate::axis::AxisName;
 use crate::problem::FieldProblem;
-use crate::request::AxisName;
 
 /// Points up to which a dry run looks up results at each named accuracy: each takes as many keys again.
 const OTHER_ACCURACIES: usize = 5000;

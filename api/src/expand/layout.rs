@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 use super::expansion::SweepPoint;
 use super::problems::Found;
-use crate::axis::Axis;
+use crate::axis::{Axis, AxisName};
 use crate::design::{Sobol, latin_hypercube};
 use crate::problem::pointer_token;
-use crate::request::{AxisName, Design, SweepRequest};
+use crate::request::{Design, SweepRequest};
 use crate::service::LIMITS;
 
 /// How the points of a request get their values.

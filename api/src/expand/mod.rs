@@ -2,6 +2,7 @@
 
 mod base;
 mod expansion;
+mod interruption;
 mod layout;
 mod members;
 mod points;
@@ -9,6 +10,7 @@ mod problems;
 mod references;
 
 pub use expansion::{Expansion, PointKey, PointKeys, SweepPoint, compose, key, key_text};
+pub use interruption::{Interruption, UNINTERRUPTED};
 pub use members::check_patch;
 
 use base::{check_without_axes, resolve, set_fields};
@@ -21,12 +23,6 @@ use references::references;
 use crate::problem::ProblemDetails;
 use crate::request::SweepRequest;
 use crate::verify::sample;
-
-/// A check between steps of an expansion, which ends it by an error: its client has left, or it has taken too long.
-pub type Interruption<'a> = &'a dyn Fn() -> Result<(), Box<ProblemDetails>>;
-
-/// The interruption that never comes.
-pub const UNINTERRUPTED: Interruption<'static> = &|| Ok(());
 
 /// The points of a request, every one of them validated.
 ///

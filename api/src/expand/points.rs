@@ -4,12 +4,12 @@ use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::transient::step_problem;
 
-use super::Interruption;
 use super::expansion::{Expansion, SweepPoint, set_number};
+use super::interruption::Interruption;
 use super::layout::Layout;
 use super::problems::{Found, Written};
+use crate::axis::AxisName;
 use crate::problem::ProblemDetails;
-use crate::request::AxisName;
 
 /// All points. The first is validated in full, the others where the axes may have made a difference.
 ///

@@ -6,11 +6,11 @@ use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::effect::active_effects;
 
-use super::Interruption;
 use super::expansion::{Expansion, SweepPoint, set_number};
+use super::interruption::Interruption;
 use super::problems::Found;
+use crate::axis::AxisName;
 use crate::problem::ProblemDetails;
-use crate::request::AxisName;
 
 impl Expansion {
     /// The reference runs that verify the points at these indices: the same scenarios at the accuracy `reference`, under the points'

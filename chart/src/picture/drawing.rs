@@ -2,10 +2,9 @@
 
 use indexmap::IndexMap;
 
-use super::{PictureError, marker::Marker, png, svg, text::Text};
-
-/// A place on the page: from the left and from the top, in page units (CSS pixels).
-pub(super) type Position = [f64; 2];
+use super::geometry::{Colour, Position, Rectangle, Stroke};
+use super::marker::Marker;
+use super::text::Text;
 
 /// A picture that is laid out and can be written.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,21 +16,6 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// A standalone SVG 1.1 document on white ground. The same drawing gives the same bytes.
-    pub fn svg(&self) -> String {
-        svg::write(self)
-    }
-
-    /// A PNG image on white ground, `width` pixels wide and as high as the picture's proportions want.
-    ///
-    /// # Errors
-    ///
-    /// [`PictureError::Size`] if the width is zero or the image would be too large, [`PictureError::Drawing`] if the drawing
-    /// has more shapes than the rasteriser takes.
-    pub fn png(&self, width: u32) -> Result<Vec<u8>, PictureError> {
-        png::write(self, width)
-    }
-
     /// The width of the page in CSS pixels: the width at which text has its natural size.
     pub fn width(&self) -> f64 {
         self.width
@@ -113,57 +97,4 @@ impl Shape {
     }
 
     pub(super) const GROUND_OPACITY: f32 = 0.8;
-}
-
-/// A rectangle with vertical sides.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rectangle {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) right: f64,
-    pub(super) bottom: f64,
-}
-
-impl Rectangle {
-    pub(super) fn width(&self) -> f64 {
-        self.right - self.left
-    }
-
-    pub(super) fn height(&self) -> f64 {
-        self.bottom - self.top
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stroke {
-    pub(super) colour: Colour,
-    pub(super) width: f64,
-    pub(super) dashed: bool,
-}
-
-impl Stroke {
-    /// The lengths of dash and gap of a dashed stroke.
-    pub(super) const DASHES: [f64; 2] = [6.0, 4.0];
-
-    pub(super) const fn solid(colour: Colour, width: f64) -> Self {
-        Self { colour, width, dashed: false }
-    }
-
-    pub(super) const fn dashed(colour: Colour, width: f64) -> Self {
-        Self { colour, width, dashed: true }
-    }
-}
-
-/// Red, green and blue in sRGB.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Colour(pub(super) u8, pub(super) u8, pub(super) u8);
-
-impl Colour {
-    pub(super) const WHITE: Self = Self(0xff, 0xff, 0xff);
-    pub(super) const TEXT: Self = Self(0x22, 0x22, 0x22);
-    pub(super) const QUIET_TEXT: Self = Self(0x55, 0x55, 0x55);
-    pub(super) const FRAME: Self = Self(0x77, 0x77, 0x77);
-    pub(super) const GRID: Self = Self(0xd9, 0xd9, 0xd9);
-    pub(super) const FINE_GRID: Self = Self(0xf0, 0xf0, 0xf0);
-    pub(super) const SHADE: Self = Self(0xf6, 0xe9, 0xd8);
 }

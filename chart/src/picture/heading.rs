@@ -1,10 +1,9 @@
 //! Heading of a plot: its title, and which line is which.
 
-use super::{
-    drawing::{Colour, Rectangle, Shape, Stroke},
-    marker::Marker,
-    text::{self, Anchor, Text, Weight},
-};
+use super::drawing::Shape;
+use super::geometry::{Colour, Rectangle, Stroke};
+use super::marker::Marker;
+use super::text::{self, Anchor, Text, Weight};
 
 const TITLE_SIZE: f64 = 17.0;
 const TITLE_ROW: f64 = 22.0;

@@ -1,6 +1,7 @@
 //! Where labels go: beside what they name, clear of everything else.
 
-use super::drawing::{Colour, Position, Rectangle, Shape};
+use super::drawing::Shape;
+use super::geometry::{Colour, Position, Rectangle};
 use super::text::{Anchor, Text};
 
 /// Cost of a line under a label, in ranks of candidates.

@@ -10,6 +10,7 @@
 
 pub mod axis;
 mod drawing;
+mod geometry;
 mod heading;
 mod label;
 mod line_plot;

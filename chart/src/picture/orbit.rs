@@ -2,15 +2,15 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use super::{
-    Drawing, PictureError, PlotAxis,
-    drawing::{Colour, Position, Rectangle, Shape, Stroke},
-    heading,
-    marker::{Marker, series_style},
-    plot_area,
-    simplify::simplified,
-    text::{Anchor, Text},
-};
+use super::axis::PlotAxis;
+use super::drawing::{Drawing, Shape};
+use super::geometry::{Colour, Position, Rectangle, Stroke};
+use super::heading;
+use super::marker::{Marker, series_style};
+use super::plot_area;
+use super::png::PictureError;
+use super::simplify::simplified;
+use super::text::{Anchor, Text};
 
 const PAGE_WIDTH: f64 = 660.0;
 const PLOT_SIDE: f64 = 540.0;

@@ -1,10 +1,9 @@
 //! The rectangle that data is drawn in, with its frame, grid, ticks and the names of its axes.
 
-use super::{
-    axis::Tick,
-    drawing::{Colour, Position, Rectangle, Shape, Stroke},
-    text::{self, Anchor, Text, Weight},
-};
+use super::axis::Tick;
+use super::drawing::Shape;
+use super::geometry::{Colour, Position, Rectangle, Stroke};
+use super::text::{self, Anchor, Text, Weight};
 
 /// The size of the text at ticks.
 pub(super) const TICK_SIZE: f64 = 12.0;

@@ -42,7 +42,19 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-pub(super) fn write(drawing: &Drawing, width: u32) -> Result<Vec<u8>, PictureError> {
+impl Drawing {
+    /// A PNG image on white ground, `width` pixels wide and as high as the picture's proportions want.
+    ///
+    /// # Errors
+    ///
+    /// [`PictureError::Size`] if the width is zero or the image would be too large, [`PictureError::Drawing`] if the drawing
+    /// has more shapes than the rasteriser takes.
+    pub fn png(&self, width: u32) -> Result<Vec<u8>, PictureError> {
+        write(self, width)
+    }
+}
+
+fn write(drawing: &Drawing, width: u32) -> Result<Vec<u8>, PictureError> {
     let scale = f64::from(width) / drawing.width;
     let height = (drawing.height * scale).round() as u32;
     let size_error = PictureError::Size { width, height };
@@ -81,7 +93,8 @@ fn raised(svg: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::drawing::{Colour, Shape};
+    use crate::picture::drawing::Shape;
+    use crate::picture::geometry::Colour;
     use crate::picture::text::{Anchor, Text, Weight, width};
 
     const SCALE: u32 = 8;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::drawing::Position;
+use super::geometry::Position;
 
 /// Distance of points that are left out from the line, at most, in page units.
 const TOLERANCE: f64 = 0.2;

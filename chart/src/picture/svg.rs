@@ -2,11 +2,17 @@
 
 use std::fmt::{self, Write};
 
-use super::{
-    drawing::{Colour, Drawing, Mosaic, Position, Shape, Stroke},
-    marker::Marker,
-    text::{Anchor, Weight},
-};
+use super::drawing::{Drawing, Mosaic, Shape};
+use super::geometry::{Colour, Position, Stroke};
+use super::marker::Marker;
+use super::text::{Anchor, Weight};
+
+impl Drawing {
+    /// A standalone SVG 1.1 document on white ground. The same drawing gives the same bytes.
+    pub fn svg(&self) -> String {
+        write(self)
+    }
+}
 
 pub(super) fn write(drawing: &Drawing) -> String {
     let mut out = String::new();

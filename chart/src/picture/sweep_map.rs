@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use super::{
-    Drawing, PictureError, PlotAxis, Tick, axis,
-    drawing::{Colour, Mosaic, Position, Rectangle, Shape, Stroke},
-    heading::{self, Entry},
-    marker::{KINDS, Marker, kind_colour},
-    plot_area,
-    text::{self, Anchor, Text, Weight},
-};
+use super::axis::{self, PlotAxis, Tick};
+use super::drawing::{Drawing, Mosaic, Shape};
+use super::geometry::{Colour, Position, Rectangle, Stroke};
+use super::heading::{self, Entry};
+use super::marker::{KINDS, Marker, kind_colour};
+use super::plot_area;
+use super::png::PictureError;
+use super::text::{self, Anchor, Text, Weight};
 
 const PAGE_WIDTH: f64 = 800.0;
 const PLOT_HEIGHT: f64 = 420.0;

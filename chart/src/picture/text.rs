@@ -7,7 +7,7 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::metrics::GlyphMetrics;
 use skrifa::{FontRef, MetadataProvider};
 
-use super::drawing::{Colour, Position};
+use super::geometry::{Colour, Position};
 
 /// One line of text.
 #[derive(Debug, Clone, PartialEq)]

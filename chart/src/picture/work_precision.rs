@@ -1,14 +1,14 @@
 //! Work-precision diagrams: what accuracy costs, by method.
 
-use super::{
-    Drawing, PictureError, PlotAxis,
-    drawing::{Colour, Position, Rectangle, Shape, Stroke},
-    heading::{self, Entry},
-    label::{LabelRoom, around, label_shapes},
-    marker::{Marker, series_style},
-    plot_area,
-    text::{self, Anchor, Weight},
-};
+use super::axis::PlotAxis;
+use super::drawing::{Drawing, Shape};
+use super::geometry::{Colour, Position, Rectangle, Stroke};
+use super::heading::{self, Entry};
+use super::label::{LabelRoom, around, label_shapes};
+use super::marker::{Marker, series_style};
+use super::plot_area;
+use super::png::PictureError;
+use super::text::{self, Anchor, Weight};
 
 const PAGE_WIDTH: f64 = 800.0;
 const PLOT_HEIGHT: f64 = 440.0;

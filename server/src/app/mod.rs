@@ -9,7 +9,7 @@ pub(crate) mod limit;
 pub(crate) mod metrics;
 pub(crate) mod pictures;
 pub(crate) mod readiness;
-pub(crate) mod retain;
+pub(crate) mod retention;
 pub(crate) mod shares;
 
 use std::sync::Arc;
@@ -35,7 +35,7 @@ use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::{Metrics, Occupancy};
 use crate::app::pictures::Pictures;
 use crate::app::readiness::Readiness;
-use crate::app::retain::Retaining;
+use crate::app::retention::RetentionConfig;
 use crate::app::shares::Shares;
 use crate::guard::strangers::Strangers;
 use crate::listen::ConnectionLimits;
@@ -55,7 +55,7 @@ pub struct Config {
     /// Limits of one owner.
     pub owner_limits: OwnerLimits,
     /// How long data are kept.
-    pub retention: Retaining,
+    pub retention: RetentionConfig,
     /// How many connections there may be, and how long they may take.
     pub connections: ConnectionLimits,
     /// Memory that large bodies of requests take together \[bytes\], of which one owner may have half.
@@ -81,7 +81,7 @@ impl Default for Config {
             poll_interval: Duration::from_millis(200),
             drain_timeout: Duration::from_secs(10),
             owner_limits: OwnerLimits::default(),
-            retention: Retaining::default(),
+            retention: RetentionConfig::default(),
             connections: ConnectionLimits::default(),
             body_bytes: 2 * LIMITS.body_bytes,
             expansions: ExpansionLimits {

@@ -11,7 +11,7 @@ use crate::answer::error::Result;
 use crate::answer::json::Json;
 use crate::answer::records::{read, timestamp};
 use crate::app::App;
-use crate::app::retain::Retaining;
+use crate::app::retention::RetentionConfig;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
@@ -87,7 +87,7 @@ pub(crate) async fn retention(State(app): State<App>) -> Result<Json<Retention>>
             deleted: last.deleted_json.as_deref().map(read).transpose()?,
         }),
     };
-    let Retaining { policy, interval } = &app.config.retention;
+    let RetentionConfig { policy, interval } = &app.config.retention;
     let recordings = policy.artifact_ages.get(HISTORY.name).unwrap_or(&policy.other_artifacts);
     Ok(Json(Retention {
         interval_seconds: interval.map(|interval| interval.as_secs_f64()),

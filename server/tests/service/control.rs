@@ -265,7 +265,7 @@ async fn a_sweep_is_deleted_when_that_is_meant() {
 
     let retention = bench.get("/v1/retention").await.json();
     assert_eq!((&retention["recordings_days"], &retention["last"]), (&json!(30.0), &Value::Null));
-    let policy = drillsweep_server::Retaining::default().policy;
+    let policy = drillsweep_server::RetentionConfig::default().policy;
     bench.store.collect_garbage(&policy, false).await.unwrap();
     let last = bench.get("/v1/retention").await.json()["last"].clone();
     assert_eq!(last["deleted"]["results"], 1, "{last}");

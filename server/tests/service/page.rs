@@ -132,7 +132,7 @@ async fn a_session_ends_with_its_token_or_after_thirty_days() {
     let later = bench.later(31 * 24 * HOUR).await;
     assert_eq!(are_valid(&later).await, (false, false));
     // And what has expired is taken away: not even who believes that it is earlier finds it.
-    later.collect_garbage(&drillsweep_server::Retaining::default().policy, false).await.unwrap();
+    later.collect_garbage(&drillsweep_server::RetentionConfig::default().policy, false).await.unwrap();
     assert_eq!(are_valid(&bench.store).await, (false, false));
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use drillsweep_server::{Config, Listeners, Retaining, serve};
+use drillsweep_server::{Config, Listeners, RetentionConfig, serve};
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
@@ -18,7 +18,8 @@ async fn a_service_that_retains_collects_and_says_when() {
     let listeners = Listeners { api: TcpListener::bind("127.0.0.1:0").await.unwrap(), metrics: None };
     let (stop, stopped) = oneshot::channel::<()>();
     let interval = Some(Duration::from_millis(5));
-    let config = Config { retention: Retaining { interval, ..Retaining::default() }, ..Config::default() };
+    let config =
+        Config { retention: RetentionConfig { interval, ..RetentionConfig::default() }, ..Config::default() };
     let service = tokio::spawn(serve(listeners, bench.store.clone(), config, async {
         let _ = stopped.await;
     }));

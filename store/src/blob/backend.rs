@@ -13,12 +13,12 @@ use object_store::path::Path as ObjectPath;
 use object_store::prefix::PrefixStore;
 use object_store::{BackoffConfig, ObjectStore, RetryConfig};
 
-use super::StoredObject;
-use super::certificate::Connector;
-use super::counted::Counted;
-use super::location::ObjectsLocation;
+use crate::blob::certificate::Connector;
+use crate::blob::counted::Counted;
+use crate::blob::location::ObjectsLocation;
+use crate::blob::metrics::ObjectMetrics;
+use crate::blob::object::StoredObject;
 use crate::error::{Result, StoreError};
-use crate::metrics::ObjectMetrics;
 
 /// Bytes that are read at once of an object in a directory where it is read from its beginning to its end. The object store's own
 /// stream hands out 8 KiB at a time, each from another thread, which takes longer than hashing them.
@@ -31,7 +31,7 @@ const S3_STRETCH: u64 = 8 << 20;
 const NO_TIMEOUT: &str = "365days";
 
 /// How long a service is waited for.
-struct Patience {
+struct RetryLimits {
     /// How long a request is sent again that failed.
     retry: Duration,
     /// Longest wait between two tries.
@@ -41,17 +41,17 @@ struct Patience {
 }
 
 /// Of those who read: somebody waits for the answer.
-const SHORT: Patience =
-    Patience { retry: Duration::from_secs(10), pause: Duration::from_secs(1), silence: "10s" };
+const SHORT: RetryLimits =
+    RetryLimits { retry: Duration::from_secs(10), pause: Duration::from_secs(1), silence: "10s" };
 
 /// Of those who write what took minutes to compute: a service that is restarted meanwhile costs nothing.
-const LONG: Patience =
-    Patience { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
+const LONG: RetryLimits =
+    RetryLimits { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
 
 /// Of those who only want to know who answers.
-const ONCE: Patience = Patience { retry: Duration::ZERO, pause: Duration::ZERO, silence: "5s" };
+const ONCE: RetryLimits = RetryLimits { retry: Duration::ZERO, pause: Duration::ZERO, silence: "5s" };
 
-/// Directory or bucket of the objects, with all that differs between them. The stores are the same one but for their patience.
+/// Directory or bucket of the objects, with all that differs between them. The stores are the same one but for the limits of their retries.
 #[derive(Debug, Clone)]
 pub(super) struct Backend {
     /// For what somebody waits for.
@@ -100,8 +100,8 @@ impl Backend {
     ) -> Result<Self> {
         // An error says that there is one already, which will do.
         let _ = rustls::crypto::ring::default_provider().install_default();
-        let open = |patience: &Patience| -> Result<Arc<dyn ObjectStore>> {
-            let bucket = PrefixStore::new(s3(bucket, settings, patience)?, prefix);
+        let open = |limits: &RetryLimits| -> Result<Arc<dyn ObjectStore>> {
+            let bucket = PrefixStore::new(s3(bucket, settings, limits)?, prefix);
             Ok(Arc::new(Counted::new(bucket, metrics.clone())))
         };
         Ok(Self {
@@ -141,20 +141,20 @@ pub(super) fn delete_file(file: &Path) -> Result<()> {
 }
 
 /// A bucket, with what the environment says of it.
-fn s3(bucket: &str, settings: &BTreeMap<String, String>, patience: &Patience) -> Result<AmazonS3> {
+fn s3(bucket: &str, settings: &BTreeMap<String, String>, limits: &RetryLimits) -> Result<AmazonS3> {
     let retry = RetryConfig {
         backoff: BackoffConfig {
             init_backoff: Duration::from_millis(100),
-            max_backoff: patience.pause,
+            max_backoff: limits.pause,
             base: 2.0,
         },
         // The time decides.
         max_retries: usize::MAX,
-        retry_timeout: patience.retry,
+        retry_timeout: limits.retry,
     };
     let mut builder = AmazonS3Builder::from_env()
         .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::Timeout), NO_TIMEOUT)
-        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::ReadTimeout), patience.silence)
+        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::ReadTimeout), limits.silence)
         .with_retry(retry)
         .with_http_connector(Connector)
         .with_conditional_put(S3ConditionalPut::ETagMatch)

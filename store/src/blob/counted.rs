@@ -14,7 +14,7 @@ use object_store::{
     PutMultipartOptions, PutOptions, PutPayload, PutResult, Result, UploadPart,
 };
 
-use crate::metrics::ObjectMetrics;
+use crate::blob::metrics::ObjectMetrics;
 
 /// An object store whose requests are counted.
 #[derive(Debug)]

@@ -110,7 +110,7 @@ macro_rules! conformance {
                 what_nobody_computes_any_more_is_not_queued,
                 a_check_repairs_all_that_it_finds,
             }
-            retention {
+            garbage {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
                 blobs_that_are_reserved_together_all_stay_for_an_hour,
@@ -191,7 +191,7 @@ macro_rules! with_objects {
                 what_nobody_computes_any_more_is_not_queued,
                 a_check_repairs_all_that_it_finds,
             }
-            retention {
+            garbage {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
                 blobs_that_are_reserved_together_all_stay_for_an_hour,
@@ -229,13 +229,13 @@ mod counts;
 mod failure;
 mod fairness;
 mod faults;
+mod garbage;
 mod large;
 mod lease;
 mod place;
 mod postgres;
 mod probe;
 mod repair;
-mod retention;
 #[path = "../servers/mod.rs"]
 mod servers;
 mod sqlite;

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::Poll;
 
 use drillsweep_store::{
-    Finished, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, patiently,
+    Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, with_backoff,
 };
 use sqlx::AssertSqlSafe;
 use sqlx::postgres::PgPool;
@@ -128,7 +128,8 @@ async fn a_database_with_another_schema_is_refused() {
         engine.open().await.close().await;
         sqlx::query(change).execute(&engine.database().await).await.unwrap();
         let opened = Store::open(&engine.config(Role::Worker, 0)).await;
-        assert!(matches!(opened, Err(StoreError::Migration(_))), "{change}");
+        let Err(error @ StoreError::OtherSchema(_)) = opened else { panic!("{change}: {opened:?}") };
+        assert!(!error.is_busy() && error.to_string().contains("start with a new database"), "{error}");
     }
 }
 
@@ -436,45 +437,6 @@ async fn many_workers_leave_nothing_pending_and_tell_every_change_once_and_in_or
     store.close().await;
 }
 
-/// The schema as it was after its first four migrations, with a sweep of three points, one of which a worker has just claimed.
-const OF_FOUR_MIGRATIONS: &str = "
-    INSERT INTO scenario (hash, text) VALUES ('\\x00', '{}');
-    INSERT INTO owner_turn (owner, vtime) VALUES ('anne', 0);
-    INSERT INTO sweep (id, owner, request, priority, points, points_queued, created) VALUES ('s', 'anne', '{}', 0, 3, 3, 0);
-    INSERT INTO work (key, physics_version, owner, state, priority, vtime, ready_at, created, changed, base)
-    SELECT decode(lpad(to_hex(n), 64, '0'), 'hex'), 1, 'anne', 'queued', 0, n, 0, 0, 0, '\\x00' FROM generate_series(1, 3) AS n;
-    INSERT INTO point (sweep_id, verifies, ordinal, parameters, work_key)
-    SELECT 's', false, vtime, '{}', key FROM work;
-    SELECT * FROM claim_work('earlier', 60000, 1)";
-
-#[tokio::test]
-async fn a_store_of_the_first_four_migrations_goes_on_where_it_was() {
-    let engine = <Postgres>::new();
-    let database = engine.database().await;
-    let (migrations, first) =
-        (concat!(env!("CARGO_MANIFEST_DIR"), "/../migrations/postgres"), TempDir::new().unwrap());
-    for file in std::fs::read_dir(migrations).unwrap().map(Result::unwrap) {
-        if file.file_name().to_str().unwrap() < "0005" {
-            std::fs::copy(file.path(), first.path().join(file.file_name())).unwrap();
-        }
-    }
-    sqlx::migrate::Migrator::new(first.path()).await.unwrap().run(&database).await.unwrap();
-    sqlx::raw_sql(OF_FOUR_MIGRATIONS).execute(&database).await.unwrap();
-
-    let store = engine.open().await;
-    let counts = sweep_record(&store, "s").await.counts;
-    assert_eq!((counts.running, counts.queued), (1, 2), "what was pending is applied");
-    let second = claim(&store, "w").await;
-    let third = finish_and_claim(&store, &second).await.next.expect("another one is ready");
-    assert_eq!(third.lease.key[31], 3);
-    assert_eq!(finish_and_claim(&store, &third).await, Finished { is_stored: true, next: None });
-    let first = claim(&engine.after(LEASE_MS + 1).await, "w").await;
-    assert_eq!((first.lease.key[31], first.lease.fencing_token), (1, 2));
-    assert!(finish(&store, &first).await);
-    assert!(sweep_record(&store, "s").await.finished.is_some());
-    assert!(store.check().await.unwrap().problems.is_empty());
-}
-
 #[tokio::test]
 async fn of_many_processes_one_looks_for_leases_that_have_run_out() {
     let engine = <Postgres>::new();
@@ -658,7 +620,7 @@ async fn a_server_that_can_make_no_process_for_a_connection_is_asked_again() {
     });
     let mut config = engine.config(Role::Server, 0);
     config.database = url.parse().unwrap();
-    let store = patiently(|| Store::open(&config)).await.unwrap();
+    let store = with_backoff(|| Store::open(&config)).await.unwrap();
     assert_eq!(turned_away.load(Ordering::Relaxed), 2);
     submit(&store, &sweep("s", [1])).await;
     store.close().await;

@@ -112,7 +112,8 @@ async fn a_database_with_another_schema_is_refused() {
         engine.open().await.close().await;
         sqlx::query(change).execute(&database(&engine).await).await.unwrap();
         let opened = Store::open(&engine.config(Role::Worker, 0)).await;
-        assert!(matches!(opened, Err(StoreError::Migration(_))), "{change}");
+        let Err(error @ StoreError::OtherSchema(_)) = opened else { panic!("{change}: {opened:?}") };
+        assert!(!error.is_busy() && error.to_string().contains("start with a new database"), "{error}");
     }
 }
 

@@ -13,9 +13,9 @@ use crate::bench::{
     Engine, addition, claim, claim_or_none, finish, key, scenario, states, submit, sweep, sweep_record,
     verified,
 };
+use crate::garbage::{DAY_MS, collect};
 use crate::place::Bucket;
 use crate::postgres::{Postgres, claim_and_die};
-use crate::retention::{DAY_MS, collect};
 use crate::sqlite::Sqlite;
 
 type Remote = Postgres<Bucket>;

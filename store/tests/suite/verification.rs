@@ -9,7 +9,7 @@ use crate::bench::{
     Engine, addition, claim, claim_or_none, finish, key, point_record, scenario, states, submit, sweep,
     sweep_record, verification, verified,
 };
-use crate::retention::{DAY_MS, collect};
+use crate::garbage::{DAY_MS, collect};
 
 pub(crate) async fn runs_come_after_the_points_and_end_the_sweep<E: Engine>() {
     let engine = E::new();

@@ -14,7 +14,7 @@ use ::parquet::file::reader::{ChunkReader, FileReader, Length, RowGroupReader, S
 use ::parquet::file::serialized_reader::ReadOptionsBuilder;
 use bytes::Bytes;
 
-use super::{ROW_GROUP, UNIT_PREFIX};
+use super::format::{ROW_GROUP, UNIT_PREFIX};
 use crate::error::TableError;
 use crate::source::Source;
 use crate::table::{Column, Table};

@@ -1,6 +1,7 @@
 //! The quantities in columns of tables.
 
-use super::{Quantity, units};
+use super::definition::Quantity;
+use super::units;
 
 /// Defines the quantities with what each of them is, and the list of them all. `-` in place of units says that there are none.
 macro_rules! quantities {

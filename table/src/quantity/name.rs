@@ -4,7 +4,10 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::LazyLock;
 
-use super::{Quantity, Units, all, columns, units};
+use super::all::all;
+use super::columns;
+use super::definition::Quantity;
+use super::units::{self, Units};
 
 /// A column's name, or a scenario's path, taken apart.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,7 @@
 //! The numeric fields of a scenario, by their paths without indices. What each of them means is said where the field is defined.
 
-use super::{Quantity, Units, units};
+use super::definition::Quantity;
+use super::units::{self, Units};
 
 /// All of them.
 pub(super) static ALL: &[Quantity] = &[

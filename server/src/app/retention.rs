@@ -1,0 +1,39 @@
+//! How long data are kept, and whether the service sees to that.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use drillsweep_store::RetentionPolicy;
+use drillsweep_table::quantity::tables::{HISTORY, SNAPSHOTS};
+
+const DAY: Duration = Duration::from_secs(86_400);
+
+/// How long data are kept, and who sees to that.
+#[derive(Debug, Clone)]
+pub struct RetentionConfig {
+    /// Retention policy: what is kept for how long.
+    pub policy: RetentionPolicy,
+    /// Time from one collection to the next; none where the service does not collect.
+    pub interval: Option<Duration>,
+}
+
+impl Default for RetentionConfig {
+    /// Recordings (histories, from which orbits and spectra are cut, and snapshots) are kept for 30 days, other tables for a year, events
+    /// for 30 days.
+    fn default() -> Self {
+        let policy = RetentionPolicy {
+            artifact_ages: Self::of_recordings(30 * DAY),
+            other_artifacts: 365 * DAY,
+            events: 30 * DAY,
+            blob_grace: DAY,
+        };
+        RetentionConfig { policy, interval: None }
+    }
+}
+
+impl RetentionConfig {
+    /// An age for every table that is a recording.
+    pub fn of_recordings(age: Duration) -> BTreeMap<String, Duration> {
+        [&HISTORY, &SNAPSHOTS].map(|layout| (layout.name.to_owned(), age)).into()
+    }
+}

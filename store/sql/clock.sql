@@ -1,0 +1,3 @@
+-- name: NOW
+-- The time: milliseconds since the epoch.
+SELECT now FROM clock

@@ -1,2 +1,0 @@
--- Counts the results that were recomputed and differ.
-SELECT count(*) FROM result WHERE disagrees

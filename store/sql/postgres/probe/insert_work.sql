@@ -1,4 +1,0 @@
--- The scratch work item, ready to be claimed.
--- $1 its key and the hash of its scenario, $2 version of the numbers.
-INSERT INTO work (key, physics_version, base, owner, state, priority, vtime, ready_at, created, changed)
-VALUES ($1, $2, $1, '', 'queued', 0, 0, 0, 0, 0)

@@ -1,2 +1,0 @@
--- Deletes sessions that have expired.
-DELETE FROM session WHERE expires <= (SELECT now FROM clock)

@@ -1,7 +1,0 @@
--- The token that a session was opened by, if both are valid now, and when the first of them expires.
--- $1 hash of the session's text.
-SELECT t.id, t.owner, t.name, t.scope, t.created, t.expires, t.revoked, t.last_used,
-       CASE WHEN t.expires < s.expires THEN t.expires ELSE s.expires END AS session_expires
-FROM session s JOIN token t ON t.id = s.token_id
-WHERE s.hash = $1 AND s.expires > (SELECT now FROM clock)
-  AND t.revoked IS NULL AND (t.expires IS NULL OR t.expires > (SELECT now FROM clock))

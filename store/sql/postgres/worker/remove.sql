@@ -1,3 +1,0 @@
--- Removes a worker.
--- $1 worker.
-DELETE FROM worker WHERE id = $1

@@ -1,0 +1,125 @@
+-- name: CANCEL
+-- Ends a lease whose work nobody wants any more; where it was asked for again since the worker's last renewal, the work is
+-- queued. A result from before stays, and the work is done then.
+-- $1 work item, $2 fencing token, $3 worker, $4 error, JSON.
+UPDATE work SET
+    state = CASE WHEN NOT cancel_requested THEN 'queued'
+                 WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done'
+                 ELSE 'cancelled' END,
+    error = CASE WHEN NOT cancel_requested OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN NULL
+                 ELSE $4 END,
+    progress = 0, lease_until = NULL, changed = (SELECT now FROM clock)
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: CRASH
+-- Ends a lease whose worker the work brought down in a way that it survived: a death of the worker, and the last that the
+-- work is given makes it dead. A result from before stays, and the work is done then.
+-- $1 work item, $2 fencing token, $3 worker, $4 error, JSON, $5 deaths that make it dead.
+UPDATE work SET
+    crash_count = crash_count + 1, progress = 0, lease_until = NULL, error = $4, changed = (SELECT now FROM clock),
+    state = CASE WHEN NOT cancel_requested AND crash_count + 1 < $5 THEN 'queued'
+                 WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done'
+                 WHEN cancel_requested THEN 'cancelled'
+                 ELSE 'dead' END
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: DELETE_RESULT
+-- Makes room for a new result; the artifacts of the one before go with it.
+-- $1 work item.
+DELETE FROM result WHERE work_key = $1
+
+-- name: DEPTHS
+-- Counts the open work items by state.
+-- Gives: waiting, queued, queued but held, leased.
+SELECT count(*) FILTER (WHERE state = 'waiting'), count(*) FILTER (WHERE state = 'queued' AND NOT held),
+       count(*) FILTER (WHERE state = 'queued' AND held), count(*) FILTER (WHERE state = 'leased')
+FROM work WHERE is_open
+
+-- name: EARLIER_BLOBS
+-- The artifacts of the result that a new one takes the place of.
+-- $1 work item.
+-- Gives: name, blob.
+SELECT name, blob FROM artifact WHERE work_key = $1
+
+-- name: EARLIER_RESULT
+-- The result that a new one takes the place of.
+-- $1 work item.
+-- Gives: summary, provenance, whether it disagrees with one before it.
+SELECT summary, provenance, disagrees FROM result WHERE work_key = $1
+
+-- name: FAIL
+-- Ends a lease without a result, for good. A result from before stays, and the work is done then.
+-- $1 work item, $2 fencing token, $3 worker, $4 error, JSON.
+UPDATE work SET
+    state = CASE WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done' ELSE 'failed' END,
+    error = $4, lease_until = NULL, changed = (SELECT now FROM clock)
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: FINISH
+-- Ends a lease with a result.
+-- $1 work item, $2 fencing token, $3 worker.
+-- Gives: the time; nothing if the lease is lost.
+UPDATE work SET
+    state = 'done', progress = 1, error = NULL, checkpoint = NULL, lease_until = NULL, changed = (SELECT now FROM clock)
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+RETURNING changed
+
+-- name: INSERT_ARTIFACT
+-- Stores an artifact of a result.
+-- $1 work item, $2 name, $3 media type, $4 blob, $5 its size, $6 rows of the table.
+INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count) VALUES ($1, $2, $3, $4, $5, $6)
+
+-- name: INSERT_RESULT
+-- Stores a result.
+-- $1 work item, $2 summary, $3 provenance, $4 time.
+INSERT INTO result (work_key, summary, provenance, created) VALUES ($1, $2, $3, $4)
+
+-- name: IS_ANYTHING_DUE
+-- Whether a lease has run out, a retry is due, or one of them ends later than it could, had it begun now: then the clock
+-- was set back.
+-- $1 longest wait of a retry [ms].
+SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < (SELECT now FROM clock))
+    OR EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until > (SELECT now FROM clock) + lease_ms)
+    OR EXISTS (SELECT 1 FROM work
+               WHERE state = 'waiting'
+                 AND (ready_at <= (SELECT now FROM clock) OR ready_at > (SELECT now FROM clock) + $1))
+
+-- name: KEEP_CHECKPOINT
+-- Notes the blob from which the work can go on.
+-- $1 work item, $2 fencing token, $3 worker, $4 blob.
+UPDATE work SET checkpoint = $4
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: NOTE_WORKER
+-- Notes what is known of the worker that has the work.
+-- $1 work item, $2 fencing token, $3 worker, $4 the note.
+UPDATE work SET worker_note = $4
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: OPEN_WORK
+-- Counts the open work items of an owner.
+-- $1 owner.
+SELECT count(*) FROM work WHERE owner = $1 AND is_open
+
+-- name: RELEASE
+-- Ends a lease whose work is given back untried: it is queued, or cancelled where nobody wants it any more. A result from
+-- before stays, and the work is done then.
+-- $1 work item, $2 fencing token, $3 worker.
+UPDATE work SET
+    state = CASE WHEN NOT cancel_requested THEN 'queued'
+                 WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done'
+                 ELSE 'cancelled' END,
+    error = NULL, attempts = attempts - 1, progress = 0, lease_until = NULL, changed = (SELECT now FROM clock)
+WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
+
+-- name: SHORTEN_LEASES
+-- Cuts leases that end later than they could, had they begun now, to their whole length from now.
+UPDATE work SET lease_until = (SELECT now FROM clock) + lease_ms
+WHERE state = 'leased' AND lease_until > (SELECT now FROM clock) + lease_ms
+
+-- name: WAKE
+-- Queues retries that are due, and those that would wait longer than they could, had they begun now.
+-- $1 longest wait of a retry [ms].
+UPDATE work SET state = 'queued', changed = (SELECT now FROM clock)
+WHERE state = 'waiting'
+  AND (ready_at <= (SELECT now FROM clock) OR ready_at > (SELECT now FROM clock) + $1)

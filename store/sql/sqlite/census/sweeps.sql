@@ -1,5 +1,0 @@
--- Counts the sweeps, and adds up their counts of points.
--- Gives: number of sweeps, points queued, running, done, failed, cancelled.
-SELECT count(*), coalesce(sum(points_queued), 0), coalesce(sum(points_running), 0), coalesce(sum(points_done), 0),
-       coalesce(sum(points_failed), 0), coalesce(sum(points_cancelled), 0)
-FROM sweep

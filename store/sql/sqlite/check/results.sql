@@ -1,2 +1,0 @@
--- Counts the results.
-SELECT count(*) FROM result

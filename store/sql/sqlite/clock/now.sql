@@ -1,2 +1,0 @@
--- The time: milliseconds since the epoch.
-SELECT now FROM clock

@@ -1,4 +1,0 @@
--- Keeps the speed of a machine in place of an earlier one.
--- ?1 host, ?2 version of the numbers, ?3 speed, JSON.
-INSERT INTO machine_speed (host, physics_version, speed, measured) VALUES (?1, ?2, ?3, (SELECT now FROM clock))
-ON CONFLICT (host, physics_version) DO UPDATE SET speed = excluded.speed, measured = excluded.measured

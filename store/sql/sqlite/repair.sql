@@ -1,0 +1,9 @@
+-- name: QUEUE
+-- Queues a work item anew that is done. It is held while all live sweeps that have it are paused.
+-- $1 work item, $2 its place in its owner's order.
+UPDATE work SET
+    state = 'queued', changed = (SELECT now FROM clock), vtime = $2, ready_at = (SELECT now FROM clock),
+    error = NULL, progress = 0, checkpoint = NULL, crash_count = 0, failure_count = 0, cancel_requested = 0,
+    held = (SELECT coalesce(min(s.paused), 0) FROM point p JOIN sweep s ON s.id = p.sweep_id
+            WHERE p.work_key = work.key AND s.cancelled = 0)
+WHERE key = $1 AND state = 'done'

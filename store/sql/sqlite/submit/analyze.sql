@@ -1,2 +1,0 @@
--- Nothing: the plans are the same however much there is.
-SELECT 1 WHERE false

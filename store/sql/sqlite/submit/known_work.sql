@@ -1,5 +1,0 @@
--- Those of some work items that have a result or failed.
--- ?1 their keys, a JSON array of hexadecimal digits.
-SELECT key FROM work
-WHERE key IN (SELECT unhex(value) FROM json_each(?1))
-  AND (stage = 'failed' OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key))

@@ -1,4 +1,0 @@
--- Version of the numbers of a sweep's points. All are of one: the first tells.
--- ?1 sweep.
-SELECT w.physics_version FROM point p JOIN work w ON w.key = p.work_key
-WHERE p.sweep_id = ?1 AND p.verifies = 0 ORDER BY p.ordinal LIMIT 1

@@ -1,4 +1,0 @@
--- Takes the cancellation of a sweep's work back that is under way.
--- ?1 sweep.
-UPDATE work SET cancel_requested = 0
-WHERE state = 'leased' AND cancel_requested <> 0 AND key IN (SELECT work_key FROM point WHERE sweep_id = ?1)

@@ -1,3 +1,0 @@
--- The version of a sweep.
--- ?1 sweep.
-SELECT version FROM sweep WHERE id = ?1 AND hidden IS NULL

@@ -1,0 +1,159 @@
+//! Store: database and object store of a process, and how they are opened.
+
+use std::path::{Path, PathBuf};
+
+use crate::blob::location::ObjectsLocation;
+use crate::blob::store::BlobStore;
+use crate::engine::database::{Database, Transaction};
+use crate::engine::location::DatabaseLocation;
+use crate::engine::notification::{Changes, Listening};
+use crate::engine::query::query;
+use crate::engine::role::Role;
+use crate::engine::sql;
+use crate::engine::throttle::Throttle;
+use crate::error::Result;
+use crate::metrics::Metrics;
+
+/// Where the store lies and who opens it.
+#[derive(Debug, Clone)]
+pub struct StoreConfig {
+    /// The queue and the index of results.
+    pub database: DatabaseLocation,
+    /// The object store.
+    pub objects: ObjectsLocation,
+    /// Role of the process that opens it.
+    pub role: Role,
+    /// Added to the database's clock \[ms\]: zero but in tests of what time does.
+    pub clock_offset_ms: i64,
+    /// Counts its use.
+    pub metrics: Metrics,
+}
+
+impl StoreConfig {
+    /// A SQLite file and the blobs in one directory; what does not exist is made when the store is opened.
+    pub fn in_directory(directory: &Path, role: Role) -> Self {
+        Self {
+            database: DatabaseLocation::Sqlite(directory.join("drillsweep.sqlite")),
+            objects: ObjectsLocation::Directory(directory.join("blobs")),
+            role,
+            clock_offset_ms: 0,
+            metrics: Metrics::default(),
+        }
+    }
+
+    /// The same with the blobs somewhere else.
+    #[must_use]
+    pub fn with_objects(self, objects: ObjectsLocation) -> Self {
+        Self { objects, ..self }
+    }
+
+    /// Whether there is a store already; opening makes one where there is none. Of a server that is found out by opening it.
+    pub fn exists(&self) -> bool {
+        match &self.database {
+            DatabaseLocation::Sqlite(path) => path.exists(),
+            DatabaseLocation::Postgres(_) => true,
+        }
+    }
+}
+
+/// The queue, the index of results and the object store. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Store {
+    pub(crate) database: Database,
+    /// The file of the embedded engine.
+    pub(crate) database_path: Option<PathBuf>,
+    pub(crate) listening: Listening,
+    pub(crate) reaping: Throttle,
+    pub(crate) applying: Throttle,
+    pub(crate) metrics: Metrics,
+    blobs: BlobStore,
+}
+
+impl Store {
+    /// Opens the store and brings its schema up to date. Any number of processes may do so at once.
+    ///
+    /// # Errors
+    /// When a directory cannot be made, or the database cannot be opened or migrated.
+    pub async fn open(config: &StoreConfig) -> Result<Self> {
+        Self::with(config, Database::open(&config.database, config.role, config.clock_offset_ms).await?)
+    }
+
+    /// Opens the store to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
+    ///
+    /// # Errors
+    /// When the database cannot be opened.
+    pub async fn open_read_only(config: &StoreConfig) -> Result<Self> {
+        Self::with(config, Database::open_read_only(&config.database).await?)
+    }
+
+    fn with(config: &StoreConfig, database: Database) -> Result<Self> {
+        let database_path = match &config.database {
+            DatabaseLocation::Sqlite(path) => Some(path.clone()),
+            DatabaseLocation::Postgres(_) => None,
+        };
+        Ok(Self {
+            database,
+            database_path,
+            listening: Listening::default(),
+            reaping: Throttle::default(),
+            applying: Throttle::default(),
+            metrics: config.metrics.clone(),
+            blobs: BlobStore::counted(&config.objects, &config.metrics.objects)?,
+        })
+    }
+
+    /// The object store.
+    pub fn blobs(&self) -> &BlobStore {
+        &self.blobs
+    }
+
+    /// Asks an object store that is reached by TLS whether it has a certificate that is accepted. One that does not answer is no
+    /// matter: it is asked again where it is needed.
+    ///
+    /// # Errors
+    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) where it has not.
+    pub async fn check_certificate(&self) -> Result<()> {
+        self.blobs.check_certificate().await
+    }
+
+    /// Closes all connections; a write-ahead log is folded in.
+    pub async fn close(&self) {
+        self.listening.stop().await;
+        self.database.close().await;
+    }
+
+    /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
+    pub(crate) async fn write(&self) -> Result<Transaction> {
+        self.database.write().await
+    }
+
+    /// A transaction that changes the state of one work item and what belongs to it, beside others that do so.
+    pub(crate) async fn write_one(&self) -> Result<Transaction> {
+        self.database.write_one().await
+    }
+
+    /// Notifications of work that may have become ready to be claimed.
+    pub async fn work_changes(&self) -> Changes {
+        self.listening.work_changes(&self.database).await
+    }
+
+    /// Notifications of changes of sweeps and of their points.
+    pub async fn sweep_changes(&self) -> Changes {
+        self.listening.sweep_changes(&self.database).await
+    }
+
+    /// Does what follows for others from changes of work items whose processes died before they had: who reads that calls it.
+    pub(crate) async fn apply_left_transitions(&self) {
+        if self.applying.is_due() {
+            self.database.apply_transitions().await;
+        }
+    }
+
+    /// Milliseconds since the epoch by the database's clock.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn now_ms(&self) -> Result<i64> {
+        query(sql::clock::NOW).scalar(&self.database).await
+    }
+}

@@ -1,0 +1,91 @@
+//! The register of workers.
+
+use crate::engine::query::{Row, query};
+use crate::engine::sql;
+use crate::error::Result;
+use crate::store::Store;
+
+/// A worker process as it registered itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorkerRecord {
+    /// Identifier, made by the worker.
+    pub id: String,
+    /// Host it runs on.
+    pub host: String,
+    /// Its process number there.
+    pub process: i64,
+    /// Version of its program.
+    pub version: String,
+    /// Version of its numbers.
+    pub physics_version: i64,
+    /// When it started \[ms since the epoch\].
+    pub started: i64,
+    /// When it was last heard of \[ms since the epoch\].
+    pub last_seen: i64,
+}
+
+impl Store {
+    /// Registers a worker, or renews its entry. The times of `worker` are taken from the database's clock.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn register_worker(&self, worker: &WorkerRecord) -> Result<()> {
+        query(sql::worker::REGISTER)
+            .bind(&worker.id)
+            .bind(&worker.host)
+            .bind(worker.process)
+            .bind(&worker.version)
+            .bind(worker.physics_version)
+            .execute(&self.database)
+            .await?;
+        Ok(())
+    }
+
+    /// Removes a worker that ends.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn remove_worker(&self, id: &str) -> Result<()> {
+        query(sql::worker::REMOVE).bind(id).execute(&self.database).await?;
+        Ok(())
+    }
+
+    /// Takes the word of who watches a worker's process that it is gone: its leases end now, and the next claim sees them as run
+    /// out, with what is known of its end (as [`note_worker`](Self::note_worker) has it). Returns how many there were.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn bury_worker(&self, host: &str, process: i64, note: Option<&str>) -> Result<u64> {
+        let ended = query(sql::worker::END_LEASES)
+            .bind(host)
+            .bind(process)
+            .bind(note)
+            .execute(&self.database)
+            .await?;
+        query(sql::worker::REMOVE_PROCESS).bind(host).bind(process).execute(&self.database).await?;
+        Ok(ended)
+    }
+
+    /// Workers heard of within the last `within_ms` milliseconds, oldest first. One that was last heard of in the future, as it
+    /// seems after the clock was set back, has been silent since.
+    ///
+    /// # Errors
+    /// When the database fails.
+    pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
+        query(sql::worker::LIST).bind(within_ms).records(&self.database, WorkerRecord::read).await
+    }
+}
+
+impl WorkerRecord {
+    fn read(row: &Row) -> Result<Self> {
+        Ok(Self {
+            id: row.get("id")?,
+            host: row.get("host")?,
+            process: row.get("process")?,
+            version: row.get("version")?,
+            physics_version: row.get("physics_version")?,
+            started: row.get("started")?,
+            last_seen: row.get("last_seen")?,
+        })
+    }
+}

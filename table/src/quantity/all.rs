@@ -1,0 +1,9 @@
+//! All quantities of the vocabulary.
+
+use super::definition::Quantity;
+use super::{columns, parameters};
+
+/// All quantities: those of columns, then those of fields of a scenario.
+pub fn all() -> impl Iterator<Item = &'static Quantity> {
+    columns::ALL.iter().copied().chain(parameters::ALL)
+}

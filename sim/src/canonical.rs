@@ -18,52 +18,158 @@ use crate::effect::active_effects;
 /// of the active effects in place of the switches. Fields with their default value are left out, so that a new field with a default, or a new
 /// effect that old scenarios do not activate, changes no key. Numbers that are not finite, which validation refuses, are `null`.
 pub fn canonical_json(scenario: &Scenario) -> String {
-    static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults::of(&with_every_section()));
-    canonical(tree(scenario), &DEFAULTS)
+    CanonicalJson::default().of(scenario)
 }
 
-/// The scenario with all that follows from it written out.
-fn tree(scenario: &Scenario) -> Map<String, Value> {
-    let mut written_out = scenario.clone();
-    written_out.contact = scenario.contact.written_out();
-    written_out.recording.spectrum_windows = scenario.spectrum_windows();
-    if let Some(window) = scenario.orbit_window() {
-        written_out.recording.orbit_window = Some(OrbitWindow::Fixed(window));
+/// [`canonical_json`] of scenarios one after the other: sections that do not differ from those of the scenario before are not written again, so that a
+/// point of a sweep costs its changes.
+#[derive(Debug, Default)]
+pub struct CanonicalJson {
+    last: Option<(Scenario, [Option<String>; SECTIONS.len()])>,
+}
+
+impl CanonicalJson {
+    /// Canonical JSON of the next scenario.
+    pub fn of(&mut self, scenario: &Scenario) -> String {
+        static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults::of(&with_every_section()));
+        match &mut self.last {
+            Some((last, texts)) => {
+                for (section, text) in SECTIONS.iter().zip(texts) {
+                    if !(section.is_same)(last, scenario) {
+                        *text = section.text(scenario, &DEFAULTS);
+                    }
+                }
+                last.clone_from(scenario);
+            }
+            None => {
+                let texts = SECTIONS.each_ref().map(|section| section.text(scenario, &DEFAULTS));
+                self.last = Some((scenario.clone(), texts));
+            }
+        }
+        let texts = self.last.iter().flat_map(|(_, texts)| texts);
+        let mut document = String::from("{");
+        for (section, text) in SECTIONS.iter().zip(texts) {
+            let Some(text) = text else { continue };
+            let separator = if document.len() > 1 { ",\"" } else { "\"" };
+            document.extend([separator, section.name, "\":", text]);
+        }
+        document.push('}');
+        document
     }
-    let snapshot_window = scenario.snapshot_window();
-    if let Some(snapshots) = &mut written_out.recording.snapshots {
-        snapshots.window = snapshot_window;
+}
+
+/// A section of a scenario.
+struct Section {
+    name: &'static str,
+    /// True if two scenarios have the same section: of all that its value depends on.
+    is_same: fn(&Scenario, &Scenario) -> bool,
+    /// Its value with all that follows from the scenario written out.
+    value: fn(&Scenario) -> Value,
+}
+
+impl Section {
+    /// Canonical JSON of the section; none if it has its default.
+    fn text(&self, scenario: &Scenario, defaults: &Defaults) -> Option<String> {
+        let mut value = (self.value)(scenario);
+        if let Some(defaults) = defaults.fields.get(self.name) {
+            if defaults.value.as_ref() == Some(&value) {
+                return None;
+            }
+            defaults.leave_out(&mut value);
+        }
+        Some(
+            serde_json_canonicalizer::to_string(&value)
+                .expect("a tree of finite numbers and names is canonical JSON"),
+        )
     }
-    for section in &mut written_out.string.sections {
-        section.material = Some(scenario.string.body_material(section));
-        section.tool_joint = section.tool_joint.map(|joint| ToolJoint {
-            material: Some(scenario.string.joint_material(section, &joint)),
-            ..joint
-        });
-    }
-    let mut tree = fields(&written_out);
-    tree.remove("name");
-    if let Some(Value::Object(string)) = tree.get_mut("string") {
-        string.remove("material");
-    }
-    tree.insert("mesh".to_owned(), value(&scenario.written_out_mesh()));
+}
+
+/// Section that is the field of its name.
+macro_rules! as_it_is {
+    ($field:ident) => {
+        Section {
+            name: stringify!($field),
+            is_same: |a, b| a.$field == b.$field,
+            value: |scenario| value(&scenario.$field),
+        }
+    };
+}
+
+/// Sections of a scenario in the order of their names, without its name.
+const SECTIONS: [Section; 14] = [
+    Section { name: "accuracy", is_same: |a, b| a.accuracy == b.accuracy, value: accuracy },
+    Section {
+        name: "contact",
+        is_same: |a, b| a.contact == b.contact,
+        value: |scenario| value(&scenario.contact.written_out()),
+    },
+    as_it_is!(cost_study),
+    as_it_is!(damping),
+    as_it_is!(duration),
+    // Decisions depend on the whole scenario.
+    Section { name: "effects", is_same: |_, _| false, value: effects },
+    as_it_is!(ensemble),
+    Section {
+        name: "mesh",
+        is_same: |a, b| (a.mesh, a.accuracy) == (b.mesh, b.accuracy),
+        value: |scenario| value(&scenario.written_out_mesh()),
+    },
+    as_it_is!(mud),
+    as_it_is!(operation),
+    Section {
+        name: "recording",
+        is_same: |a, b| a.duration == b.duration && a.recording == b.recording,
+        value: recording,
+    },
+    as_it_is!(statics),
+    Section { name: "string", is_same: |a, b| a.string == b.string, value: string },
+    as_it_is!(well),
+];
+
+fn accuracy(scenario: &Scenario) -> Value {
     let mut accuracy = fields(&scenario.accuracy.time_stepping());
     if let Some(promise) = scenario.accuracy.promise() {
         // A settled window ends by it, and results report it.
         accuracy.insert("promise".to_owned(), json!([promise.orbit_size, promise.radius_deviation]));
     }
-    tree.insert("accuracy".to_owned(), Value::Object(accuracy));
+    Value::Object(accuracy)
+}
+
+fn effects(scenario: &Scenario) -> Value {
     let active = active_effects(scenario);
     let effects = Effect::ALL.iter().filter(|&&effect| active.is_active(effect));
     let mut effects: Vec<&str> = effects.map(|effect| effect.name()).collect();
     effects.sort_unstable();
-    tree.insert("effects".to_owned(), json!(effects));
-    tree
+    json!(effects)
 }
 
-fn canonical(mut tree: Map<String, Value>, defaults: &Defaults) -> String {
-    defaults.leave_out_of_fields(&mut tree);
-    serde_json_canonicalizer::to_string(&tree).expect("a tree of finite numbers and names is canonical JSON")
+/// Recording with windows that follow the duration.
+fn recording(scenario: &Scenario) -> Value {
+    let mut recording = scenario.recording.clone();
+    recording.spectrum_windows = scenario.spectrum_windows();
+    if let Some(window) = scenario.orbit_window() {
+        recording.orbit_window = Some(OrbitWindow::Fixed(window));
+    }
+    let snapshot_window = scenario.snapshot_window();
+    if let Some(snapshots) = &mut recording.snapshots {
+        snapshots.window = snapshot_window;
+    }
+    value(&recording)
+}
+
+/// String of which every section and tool joint has its material, in place of one of its own.
+fn string(scenario: &Scenario) -> Value {
+    let mut string = scenario.string.clone();
+    for section in &mut string.sections {
+        section.tool_joint = section.tool_joint.map(|joint| ToolJoint {
+            material: Some(scenario.string.joint_material(section, &joint)),
+            ..joint
+        });
+        section.material = Some(scenario.string.body_material(section));
+    }
+    let mut string = fields(&string);
+    string.remove("material");
+    Value::Object(string)
 }
 
 /// Values that a part of a document has where it is absent.
@@ -175,7 +281,9 @@ fn value(part: &impl Serialize) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Accuracy, AccuracyPreset, AccuracyTarget, Effect, Material, Switch, preset};
+    use drillsweep_scenario::{
+        Accuracy, AccuracyPreset, AccuracyTarget, Effect, Material, Mesh, Switch, preset,
+    };
     use serde::Deserialize;
     use serde_json::{Value, json};
 
@@ -383,7 +491,12 @@ mod tests {
 
     #[test]
     fn a_new_field_changes_no_key_of_a_scenario_without_it() {
-        let scenario = tree(&paper());
+        let scenario: Map<String, Value> =
+            SECTIONS.iter().map(|section| (section.name.to_owned(), (section.value)(&paper()))).collect();
+        let canonical = |mut tree: Map<String, Value>, defaults: &Defaults| {
+            defaults.leave_out_of_fields(&mut tree);
+            serde_json_canonicalizer::to_string(&tree).unwrap()
+        };
         let with_drive = json!({ "inertia": 1e3, "limits": [1.0] });
         let mut sample = scenario.clone();
         sample.insert("drive".to_owned(), with_drive.clone());
@@ -418,6 +531,37 @@ mod tests {
             assert_eq!(canonical_json(&paper()).contains(&name), is_active, "{name}");
             assert!(!(name.contains("fluid") && dry.contains(&name)), "{name}");
         }
+    }
+
+    #[test]
+    fn sections_are_the_fields_of_a_scenario_in_their_order() {
+        let mut fields = fields(&with_every_section());
+        fields.remove("name");
+        let mut names: Vec<String> = fields.into_iter().map(|(name, _)| name).collect();
+        names.sort();
+        assert_eq!(SECTIONS.each_ref().map(|section| section.name).as_slice(), names);
+    }
+
+    #[test]
+    fn a_text_does_not_depend_on_the_scenario_before() {
+        let tree = serde_json::to_value(with_every_section()).unwrap();
+        let mut numbers = Vec::new();
+        collect(&tree, String::new(), &mut numbers);
+        let mut writer = CanonicalJson::default();
+        for (pointer, number) in numbers {
+            let mut changed = tree.clone();
+            *changed.pointer_mut(&pointer).unwrap() = match number.as_u64() {
+                Some(whole) => Value::from(whole + 1),
+                None => Value::from(number.as_f64().unwrap().next_up()),
+            };
+            let changed: Scenario = serde_json::from_value(changed).unwrap();
+            assert_eq!(writer.of(&changed), canonical_json(&changed), "{pointer}");
+        }
+        for accuracy in AccuracyPreset::ALL {
+            let changed = Scenario { accuracy: Accuracy::Preset(accuracy), mesh: Mesh::AUTO, ..paper() };
+            assert_eq!(writer.of(&changed), canonical_json(&changed));
+        }
+        assert_eq!(writer.of(&paper()), canonical_json(&paper()));
     }
 
     #[test]

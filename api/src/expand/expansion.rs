@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::canonical::canonical_json;
+use drillsweep_sim::canonical::CanonicalJson;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 
@@ -49,9 +49,10 @@ impl Expansion {
             return None;
         }
         let keys_at = |accuracy: AccuracyPreset| {
+            let mut written = Keys::default();
             let keys = |point: &SweepPoint| {
                 let mut scenario = Scenario { accuracy: Accuracy::Preset(accuracy), ..self.scenario(point) };
-                let point = SweepPoint::new(point.ordinal, Vec::new(), &mut scenario);
+                let point = SweepPoint::new(point.ordinal, Vec::new(), &mut scenario, &mut written);
                 (point.key, point.fuller_key)
             };
             (accuracy.name(), self.points.iter().map(keys).collect())
@@ -95,11 +96,11 @@ pub struct SweepPoint {
 
 impl SweepPoint {
     /// The point of this scenario, which is left as it was.
-    pub(super) fn new(ordinal: u32, values: Vec<f64>, scenario: &mut Scenario) -> Self {
-        let key_of_point = key(scenario);
+    pub(super) fn new(ordinal: u32, values: Vec<f64>, scenario: &mut Scenario, keys: &mut Keys) -> Self {
+        let key_of_point = keys.of(scenario);
         let fuller_key = (scenario.recording.outputs != Outputs::Full).then(|| {
             let outputs = std::mem::take(&mut scenario.recording.outputs);
-            let fuller = key(scenario);
+            let fuller = keys.of(scenario);
             scenario.recording.outputs = outputs;
             fuller
         });
@@ -118,11 +119,22 @@ pub fn key_text(key: &PointKey) -> String {
 /// The content hash of a scenario: BLAKE3 over a domain tag, the physics version and the scenario's
 /// canonical JSON.
 pub fn key(scenario: &Scenario) -> PointKey {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(b"drillsweep point\0");
-    hasher.update(&PHYSICS_VERSION.to_le_bytes());
-    hasher.update(canonical_json(scenario).as_bytes());
-    hasher.finalize().into()
+    Keys::default().of(scenario)
+}
+
+/// Keys of points one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Keys(CanonicalJson);
+
+impl Keys {
+    /// Key of the next point.
+    pub(super) fn of(&mut self, scenario: &Scenario) -> PointKey {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(b"drillsweep point\0");
+        hasher.update(&PHYSICS_VERSION.to_le_bytes());
+        hasher.update(self.0.of(scenario).as_bytes());
+        hasher.finalize().into()
+    }
 }
 
 /// The scenario of a stored point: its base with its changes, both as JSON text.

@@ -4,7 +4,7 @@ use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::transient::step_problem;
 
-use super::expansion::{Expansion, SweepPoint, set_number};
+use super::expansion::{Expansion, Keys, SweepPoint, set_number};
 use super::interruption::Interruption;
 use super::layout::Layout;
 use super::problems::{Found, Written};
@@ -24,7 +24,7 @@ pub(super) fn points(
 ) -> Result<Expansion, Box<ProblemDetails>> {
     let mut warnings = Found::default();
     let mut points = Vec::with_capacity(layout.total);
-    let mut scenario = base.clone();
+    let (mut scenario, mut keys) = (base.clone(), Keys::default());
     let paths: Vec<&str> = layout.names.iter().map(AxisName::scenario_path).collect();
     for (index, ordinal) in (0..layout.total).zip(1..) {
         interruption()?;
@@ -52,7 +52,7 @@ pub(super) fn points(
                 continue;
             }
         }
-        points.push(SweepPoint::new(ordinal, values, &mut scenario));
+        points.push(SweepPoint::new(ordinal, values, &mut scenario, &mut keys));
     }
     let warnings = warnings.into_vec();
     let expansion = Expansion { base, axes: layout.names.clone(), points, verification: None, warnings };

@@ -6,7 +6,7 @@ use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
 use drillsweep_sim::admission::{validate, validate_changes};
 use drillsweep_sim::effect::active_effects;
 
-use super::expansion::{Expansion, SweepPoint, set_number};
+use super::expansion::{Expansion, Keys, SweepPoint, set_number};
 use super::interruption::Interruption;
 use super::problems::Found;
 use crate::axis::AxisName;
@@ -63,7 +63,7 @@ pub(super) fn references(
         .collect();
     let axes: Vec<AxisName> = kept.iter().map(|axis| expansion.axes[*axis].clone()).collect();
     let paths: Vec<&str> = axes.iter().map(AxisName::scenario_path).collect();
-    let mut scenario = base.clone();
+    let (mut scenario, mut keys) = (base.clone(), Keys::default());
     let mut points = Vec::with_capacity(indices.len());
     for (point, is_first) in
         indices.iter().map(|index| &expansion.points[*index]).zip(once(true).chain(repeat(false)))
@@ -77,7 +77,7 @@ pub(super) fn references(
             false => validate_changes(&scenario, paths.iter().copied()),
         });
         match checked {
-            Ok(_) => points.push(SweepPoint::new(point.ordinal, values, &mut scenario)),
+            Ok(_) => points.push(SweepPoint::new(point.ordinal, values, &mut scenario, &mut keys)),
             // The point itself is valid: it is the reference that the scenario does not allow.
             Err(_) if problems.is_full() => break,
             Err(Problems(of_scenario)) => {

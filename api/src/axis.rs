@@ -179,7 +179,6 @@ impl TryFrom<AxisFields> for Axis {
     }
 }
 
-/// The schemas of the three forms of an axis, which exclude each other by the members that they require and allow.
 /// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
 /// scenario.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]

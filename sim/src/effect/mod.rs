@@ -1,4 +1,4 @@
-//! The register of effects: of each its [term](crate::term), and the accounts of the energy ledger; decisions which of them a scene calls for.
+//! The register of effects, each with its term, and of the accounts of the energy ledger; decisions which effects a scenario calls for.
 
 mod decide;
 

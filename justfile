@@ -34,6 +34,7 @@ check: python
 # Run all tests: Rust, then Python against the binary of the Rust tests
 test: python
     cargo nextest run --locked --workspace
+    cargo test --locked --quiet --workspace --doc
     cd api/python && {{ bin }}/pytest
 
 # Write all generated files anew

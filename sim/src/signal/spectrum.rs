@@ -61,6 +61,19 @@ pub struct PeakSearch {
 /// The full spectrum of (u, v) \[m\] sampled at `rate_hz`; any number of samples will do. The highest of an even
 /// number of frequencies counts as negative. Without samples the spectrum is empty.
 ///
+/// ```
+/// use std::f64::consts::TAU;
+///
+/// use drillsweep_sim::signal::{Window, full_spectrum};
+///
+/// // A circle of 3 mm, travelled twice a second against the rotation of the string, over one second.
+/// let angles = (0..100).map(|n| -TAU * 2.0 * f64::from(n) / 100.0);
+/// let (u, v): (Vec<f64>, Vec<f64>) = angles.map(|angle| (3e-3 * angle.cos(), 3e-3 * angle.sin())).unzip();
+/// let spectrum = full_spectrum(&u, &v, 100.0, Window::Rectangular);
+/// let line = spectrum.frequency_hz.iter().position(|&frequency| frequency == -2.0).unwrap();
+/// assert!((spectrum.amplitude[line] - 3e-3).abs() < 1e-15);
+/// ```
+///
 /// # Panics
 /// When u and v differ in length.
 pub fn full_spectrum(u: &[f64], v: &[f64], rate_hz: f64, window: Window) -> FullSpectrum {

@@ -58,6 +58,22 @@ pub(super) struct Interval {
 impl WellPath {
     /// The path of a well.
     ///
+    /// ```
+    /// use drillsweep_scenario::{SurveyStation, Well};
+    /// use drillsweep_sim::well::WellPath;
+    ///
+    /// // A quarter of a circle of 100 m from vertical to horizontal, by its two ends.
+    /// let radius = 100.0;
+    /// let quarter = radius * std::f64::consts::FRAC_PI_2;
+    /// let station = |measured_depth, inclination_deg| SurveyStation { measured_depth, inclination_deg, azimuth_deg: 0.0 };
+    /// let survey = vec![station(0.0, 0.0), station(quarter, 90.0)];
+    /// let path = WellPath::new(&Well { hole_diameter: 0.2, survey })?;
+    /// assert!((path.true_vertical_depth(quarter) - radius).abs() < 1e-9);
+    /// let third = radius * (1.0 - f64::to_radians(30.0).cos());
+    /// assert!((path.position(quarter / 3.0).x.hypot(path.position(quarter / 3.0).y) - third).abs() < 1e-9);
+    /// # Ok::<(), drillsweep_sim::well::WellError>(())
+    /// ```
+    ///
     /// # Errors
     /// Fewer than two stations, a number that is not finite, depths that do not increase, or an interval
     /// with a dogleg of 180 deg, in which the arc's plane is undefined.

@@ -35,6 +35,13 @@ COMPARED = {
 }
 """Views of a comparison that have one picture, and its name."""
 
+RULES_OF_THEME: dict[str, dict[str, Any]] = {
+    "light": {},
+    # Themes differ by their colours alone.
+    "dark": {"runOnly": {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}},
+}
+"""Options of axe by the theme of the page: all rules in one, those of colours in both."""
+
 Opens = Callable[..., Page]
 
 

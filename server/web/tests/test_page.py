@@ -11,7 +11,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
-from browsing import COMPARED, GONE, MINUS, NASTY, REFUSED, Opens, drag, drawn, requested, until
+from browsing import COMPARED, GONE, MINUS, NASTY, REFUSED, RULES_OF_THEME, Opens, drag, drawn, requested, until
 from drillsweep import Axis, Client, Outputs, Sweep
 from service import SHORT, Service, make_token, revoke_token, tokens_of
 
@@ -482,7 +482,7 @@ def test_no_view_keeps_anybody_out(
             if summary.is_visible():
                 summary.click()
         page.wait_for_load_state("networkidle")
-        found = Axe().run(page)
+        found = Axe().run(page, options=RULES_OF_THEME[theme])
         assert found.violations_count == 0, f"{view}\n{found.generate_report()}"
 
 

@@ -15,6 +15,7 @@ from browsing import (
     COMPARED,
     MINUS,
     REFUSED,
+    RULES_OF_THEME,
     Opens,
     drag,
     drawn,
@@ -475,7 +476,7 @@ def test_no_view_of_a_comparison_keeps_anybody_out(
         page.wait_for_load_state("networkidle")
         for details in page.locator("main details").all():
             details.evaluate("details => { details.open = true }")
-        found = Axe().run(page)
+        found = Axe().run(page, options=RULES_OF_THEME[theme])
         assert found.violations_count == 0, f"{view}\n{found.generate_report()}"
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]

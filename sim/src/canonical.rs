@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use drillsweep_scenario::{Effect, OrbitWindow, Scenario, ToolJoint, preset};
+use drillsweep_scenario::{ActiveEffects, Effect, OrbitWindow, Scenario, ToolJoint, preset};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
@@ -25,25 +25,27 @@ pub fn canonical_json(scenario: &Scenario) -> String {
 /// point of a sweep costs its changes.
 #[derive(Debug, Default)]
 pub struct CanonicalJson {
-    last: Option<(Scenario, [Option<String>; SECTIONS.len()])>,
+    last: Option<(Decided, [Option<String>; SECTIONS.len()])>,
 }
 
 impl CanonicalJson {
     /// Canonical JSON of the next scenario.
     pub fn of(&mut self, scenario: &Scenario) -> String {
         static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults::of(&with_every_section()));
+        let active = active_effects(scenario);
         match &mut self.last {
             Some((last, texts)) => {
                 for (section, text) in SECTIONS.iter().zip(texts) {
-                    if !(section.is_same)(last, scenario) {
-                        *text = section.text(scenario, &DEFAULTS);
+                    if !(section.is_same)(last, scenario, &active) {
+                        *text = section.text(scenario, &active, &DEFAULTS);
                     }
                 }
-                last.clone_from(scenario);
+                last.scenario.clone_from(scenario);
+                last.active = active;
             }
             None => {
-                let texts = SECTIONS.each_ref().map(|section| section.text(scenario, &DEFAULTS));
-                self.last = Some((scenario.clone(), texts));
+                let texts = SECTIONS.each_ref().map(|section| section.text(scenario, &active, &DEFAULTS));
+                self.last = Some((Decided { scenario: scenario.clone(), active }, texts));
             }
         }
         let texts = self.last.iter().flat_map(|(_, texts)| texts);
@@ -58,19 +60,26 @@ impl CanonicalJson {
     }
 }
 
+/// A scenario with its active effects.
+#[derive(Debug)]
+struct Decided {
+    scenario: Scenario,
+    active: ActiveEffects,
+}
+
 /// A section of a scenario.
 struct Section {
     name: &'static str,
     /// True if two scenarios have the same section: of all that its value depends on.
-    is_same: fn(&Scenario, &Scenario) -> bool,
+    is_same: fn(&Decided, &Scenario, &ActiveEffects) -> bool,
     /// Its value with all that follows from the scenario written out.
-    value: fn(&Scenario) -> Value,
+    value: fn(&Scenario, &ActiveEffects) -> Value,
 }
 
 impl Section {
     /// Canonical JSON of the section; none if it has its default.
-    fn text(&self, scenario: &Scenario, defaults: &Defaults) -> Option<String> {
-        let mut value = (self.value)(scenario);
+    fn text(&self, scenario: &Scenario, active: &ActiveEffects, defaults: &Defaults) -> Option<String> {
+        let mut value = (self.value)(scenario, active);
         if let Some(defaults) = defaults.fields.get(self.name) {
             if defaults.value.as_ref() == Some(&value) {
                 return None;
@@ -89,40 +98,51 @@ macro_rules! as_it_is {
     ($field:ident) => {
         Section {
             name: stringify!($field),
-            is_same: |a, b| a.$field == b.$field,
-            value: |scenario| value(&scenario.$field),
+            is_same: |a, b, _| a.scenario.$field == b.$field,
+            value: |scenario, _| value(&scenario.$field),
         }
     };
 }
 
 /// Sections of a scenario in the order of their names, without its name.
 const SECTIONS: [Section; 14] = [
-    Section { name: "accuracy", is_same: |a, b| a.accuracy == b.accuracy, value: accuracy },
+    Section {
+        name: "accuracy",
+        is_same: |a, b, _| a.scenario.accuracy == b.accuracy,
+        value: |scenario, _| accuracy(scenario),
+    },
     Section {
         name: "contact",
-        is_same: |a, b| a.contact == b.contact,
-        value: |scenario| value(&scenario.contact.written_out()),
+        is_same: |a, b, _| a.scenario.contact == b.contact,
+        value: |scenario, _| value(&scenario.contact.written_out()),
     },
     as_it_is!(cost_study),
     as_it_is!(damping),
     as_it_is!(duration),
-    // Decisions depend on the whole scenario.
-    Section { name: "effects", is_same: |_, _| false, value: effects },
+    Section {
+        name: "effects",
+        is_same: |a, _, active| a.active == *active,
+        value: |_, active| effects(active),
+    },
     as_it_is!(ensemble),
     Section {
         name: "mesh",
-        is_same: |a, b| (a.mesh, a.accuracy) == (b.mesh, b.accuracy),
-        value: |scenario| value(&scenario.written_out_mesh()),
+        is_same: |a, b, _| (a.scenario.mesh, a.scenario.accuracy) == (b.mesh, b.accuracy),
+        value: |scenario, _| value(&scenario.written_out_mesh()),
     },
     as_it_is!(mud),
     as_it_is!(operation),
     Section {
         name: "recording",
-        is_same: |a, b| a.duration == b.duration && a.recording == b.recording,
-        value: recording,
+        is_same: |a, b, _| a.scenario.duration == b.duration && a.scenario.recording == b.recording,
+        value: |scenario, _| recording(scenario),
     },
     as_it_is!(statics),
-    Section { name: "string", is_same: |a, b| a.string == b.string, value: string },
+    Section {
+        name: "string",
+        is_same: |a, b, _| a.scenario.string == b.string,
+        value: |scenario, _| string(scenario),
+    },
     as_it_is!(well),
 ];
 
@@ -135,8 +155,7 @@ fn accuracy(scenario: &Scenario) -> Value {
     Value::Object(accuracy)
 }
 
-fn effects(scenario: &Scenario) -> Value {
-    let active = active_effects(scenario);
+fn effects(active: &ActiveEffects) -> Value {
     let effects = Effect::ALL.iter().filter(|&&effect| active.is_active(effect));
     let mut effects: Vec<&str> = effects.map(|effect| effect.name()).collect();
     effects.sort_unstable();
@@ -491,8 +510,10 @@ mod tests {
 
     #[test]
     fn a_new_field_changes_no_key_of_a_scenario_without_it() {
-        let scenario: Map<String, Value> =
-            SECTIONS.iter().map(|section| (section.name.to_owned(), (section.value)(&paper()))).collect();
+        let scenario: Map<String, Value> = SECTIONS
+            .iter()
+            .map(|section| (section.name.to_owned(), (section.value)(&paper(), &active_effects(&paper()))))
+            .collect();
         let canonical = |mut tree: Map<String, Value>, defaults: &Defaults| {
             defaults.leave_out_of_fields(&mut tree);
             serde_json_canonicalizer::to_string(&tree).unwrap()

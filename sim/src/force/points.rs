@@ -132,6 +132,23 @@ impl<const D: usize> PointForces<D> {
         }
     }
 
+    /// Computes the forces that depend on the motion into `out`, at the end of a step.
+    pub(crate) fn evaluate(
+        &self,
+        time: f64,
+        motion: &dyn Fn(usize) -> NodeMotion,
+        state: &PointState,
+        out: &mut [[f64; DOFS]],
+    ) {
+        for (place, point) in self.points.iter().enumerate() {
+            if point.force.dependence() == Dependence::Motion {
+                let unknowns = &state.unknowns[point.unknowns.clone()];
+                let at = At { time, motion, unknowns, memory: &state.memory[place] };
+                point.force.forces(&at, &mut out[point.sites.clone()]);
+            }
+        }
+    }
+
     /// Computes the forces that depend on the motion into `out` and adds them to `nodal`.
     pub(crate) fn add_of_motion(
         &self,

@@ -190,6 +190,7 @@ fn negative_directions(model: &Model, equilibrium: &Equilibrium) -> usize {
             }
         }
     }
+    model.add_force_tangents(&model.at_rest(&equilibrium.displacement), &mut stiffness, None);
     negative_eigenvalues(stiffness, &system.held)
 }
 

@@ -40,29 +40,6 @@ const WORKING: usize = {
     count
 };
 
-/// Places of the wall's entries.
-const NORMAL: usize = place(wall::NORMAL_WORK);
-const FRICTION: usize = place(wall::FRICTION_WORK);
-const ROTATION: usize = place(wall::ROTATION_WORK);
-
-/// Place of an entry in [`ENTRIES`].
-const fn place(entry: &str) -> usize {
-    let mut place = 0;
-    while !is_same(ENTRIES[place], entry) {
-        place += 1;
-    }
-    place
-}
-
-const fn is_same(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut i = 0;
-    while i < a.len() && i < b.len() && a[i] == b[i] {
-        i += 1;
-    }
-    i == a.len() && i == b.len()
-}
-
 /// The accounts of damping.
 fn working() -> impl Iterator<Item = &'static Account> {
     DAMPING.into_iter().flatten()
@@ -157,6 +134,8 @@ pub(super) struct Ledger<const D: usize> {
     /// Symmetric: of the accounts of damping. Skew: what in the stiffness has no potential.
     forms: Forms<WORKING, D>,
     wall: Wall,
+    /// Places of the wall's works among [`ENTRIES`]: normal forces, friction, rotation.
+    of_wall: [usize; 3],
     freedoms: Freedoms<D>,
     rotation_speed: f64,
     work: Work,
@@ -179,6 +158,9 @@ impl<const D: usize> Ledger<D> {
             load: system.load.clone(),
             forms: Forms::new(damping, &system.stiffness),
             wall: model.wall.clone(),
+            of_wall: [wall::NORMAL_WORK, wall::FRICTION_WORK, wall::ROTATION_WORK].map(|work| {
+                ENTRIES.iter().position(|entry| *entry == work).expect("the works of the wall are entries")
+            }),
             freedoms: system.freedoms,
             rotation_speed: system.rotation_speed,
             work: Work::default(),
@@ -245,10 +227,11 @@ impl<const D: usize> Ledger<D> {
         normal_power = normal_power + along.normal;
         friction_power = friction_power + along.friction;
         torque = torque + along.torque;
+        let [normal, friction, rotation] = self.of_wall;
         let mut powers = [0.0; ENTRIES.len()];
-        powers[NORMAL] = normal_power.sum();
-        powers[FRICTION] = friction_power.sum();
-        powers[ROTATION] = friction_torque::power_of_rotation(torque.sum(), self.rotation_speed);
+        powers[normal] = normal_power.sum();
+        powers[friction] = friction_power.sum();
+        powers[rotation] = friction_torque::power_of_rotation(torque.sum(), self.rotation_speed);
         forces.points.each_power(&acting.points, velocity, |entry, power| powers[entry] += power);
         Work { forces: powers, ..Work::default() }
     }

@@ -1,6 +1,7 @@
 //! The right-hand side of the equations of motion: constant loads, the wall, other forces at nodes.
 
 use super::implicit::held_list;
+use super::state::State;
 use crate::force::wall::{Compliance, ContactForces, WallForces};
 use crate::force::{NodeCompliance, NodeMotion, PointForces, PointState, UnknownStage};
 use crate::freedom::{DOFS, Freedoms};
@@ -109,6 +110,16 @@ impl<const D: usize> Forces<D> {
             self.points.add_of_motion(time, &motion, unknowns, &mut out.points, all);
         }
         self.hold(external, all);
+    }
+
+    /// Forces of a state at `time` \[s\], with the motion of the nodes' surfaces.
+    pub(super) fn evaluate(&self, time: f64, state: &State<D>, out: &mut ActingForces) {
+        self.wall.contact_at(&state.displacement, &state.velocity, &mut out.wall);
+        out.unknowns.copy_from_slice(&state.points.unknowns);
+        if self.points.follow_motion() {
+            let motion = self.motion_of(&state.displacement, &state.velocity);
+            self.points.evaluate(time, &motion, &state.points, &mut out.points);
+        }
     }
 
     /// The same with forces that agree with the motion that they make: on entry `out` holds those that the motion was found with.

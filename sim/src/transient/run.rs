@@ -499,10 +499,10 @@ impl<'m, const D: usize> Run<'m, D> {
         Ok(())
     }
 
-    /// Evaluates the wall at the present state.
+    /// Evaluates the forces at the present state, from which the next step begins.
     fn touch(&mut self) {
-        let state = &self.progress.state;
-        self.forces.wall.contact_at(&state.displacement, &state.velocity, &mut self.acting.wall);
+        let time = self.time();
+        self.forces.evaluate(time, &self.progress.state, &mut self.acting);
     }
 
     /// Takes the step that led to the present state into the memories of forces.
@@ -510,7 +510,6 @@ impl<'m, const D: usize> Run<'m, D> {
         let time = self.time();
         let State { displacement, velocity, points, .. } = &mut self.progress.state;
         self.forces.points.commit(time, &self.forces.motion_of(displacement, velocity), points);
-        self.acting.unknowns.copy_from_slice(&points.unknowns);
     }
 
     /// Enters the present contacts into the statistics, after a step of so many seconds, and the part of them in the orbit window.
@@ -625,8 +624,8 @@ impl<'m, const D: usize> Run<'m, D> {
         progress.step_range = [shortest.min(step_range[0]), longest.max(step_range[1])];
         progress.ticks += 1 << level;
         self.check_bounds()?;
-        self.touch();
         self.commit();
+        self.touch();
         let [from, to] =
             [self.orbit_samples.start, self.orbit_samples.end].map(|sample| self.grid.at_sample(sample));
         let counted = self.progress.ticks.min(to).saturating_sub(start.max(from));

@@ -25,7 +25,7 @@ pub(super) struct State<const D: usize> {
     pub(super) adaptive_step: f64,
 }
 
-/// Where a step's work and error are entered.
+/// Books that a step's work and error are entered in.
 pub(super) struct Books<'a, const D: usize> {
     pub(super) ledger: &'a mut Ledger<D>,
     pub(super) errors: &'a mut ErrorSum,

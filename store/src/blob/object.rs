@@ -12,10 +12,10 @@ pub(super) const SCRATCH: &str = "probe";
 /// An object as it lies in the store, or the part of one whose upload was not finished.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct StoredObject {
-    /// Where it is or would be.
+    /// Path of the blob, present or not.
     pub(super) path: ObjectPath,
     pub(crate) bytes: u64,
-    /// Where the part of an unfinished one is.
+    /// Path of the part that an unfinished upload has written.
     pub(super) unfinished: Option<PathBuf>,
 }
 

@@ -21,7 +21,7 @@ pub(crate) struct Order {
     pub(crate) last: i64,
 }
 
-/// Where an owner's order ends; an owner that has had no turn gets the first.
+/// End of an owner's order in the queue; an owner that has had no turn gets the first.
 pub(crate) async fn end_of_order(tx: &mut Transaction, owner: &str) -> Result<Order> {
     query(sql::order::INSERT_TURN).bind(owner).execute(&mut *tx).await?;
     let (first, last) = query(sql::order::ENDS_OF_ORDER).bind(owner).one(&mut *tx).await?;

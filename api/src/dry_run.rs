@@ -1,6 +1,6 @@
 //! Preview of a request, without storing or simulating anything.
 
-use drillsweep_sim::study::plan::{MachineSpeed, Plan};
+use drillsweep_study::plan::{MachineSpeed, Plan};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 

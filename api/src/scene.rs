@@ -3,15 +3,15 @@
 use std::fmt::Display;
 
 use drillsweep_scenario::Scenario;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{ModeSearch, modes};
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::plan::MachineSpeed;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::{ModeSearch, modes};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_study::plan::MachineSpeed;
 
 use crate::problem::{ProblemDetails, ProblemKind};
 
-pub use drillsweep_sim::modes::Modes;
-pub use drillsweep_sim::study::plan::Plan;
+pub use drillsweep_sim::solve::modes::Modes;
+pub use drillsweep_study::plan::Plan;
 
 /// Up to this frequency modes are searched \[Hz\]: there are about two for each hertz and 200 m, and each takes its time.
 pub const HIGHEST_MODE_HZ: f64 = 50.0;

@@ -112,8 +112,8 @@ fn printed_name(integrator: Integrator) -> &'static str {
 mod tests {
     use drillsweep_api::cost::CostErrors;
     use drillsweep_scenario::TimeWindow;
-    use drillsweep_sim::study::cost::StatisticError;
-    use drillsweep_sim::transient::MotionRegime;
+    use drillsweep_sim::solve::run::MotionRegime;
+    use drillsweep_study::cost::StatisticError;
 
     use super::*;
     use crate::PNG_WIDTH;

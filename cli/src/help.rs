@@ -47,7 +47,6 @@ const GROUPS: [Group; 4] = [
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),
             ("cost", "drillsweep cost paper-200m-damped --presets draft,standard --output cost"),
-            ("soak", "drillsweep soak --scenes 100 --threads 2"),
         ],
     ),
     (

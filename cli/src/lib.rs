@@ -21,7 +21,6 @@ mod processor;
 mod scenario;
 mod service;
 mod simulate;
-mod soak;
 mod submit;
 mod sweeps;
 #[cfg(feature = "opentelemetry")]
@@ -95,8 +94,6 @@ enum Command {
     Cost(cost::CostArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
-    /// Run random scenarios over wide ranges and report how each ends.
-    Soak(soak::SoakArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -219,7 +216,6 @@ fn run() -> anyhow::Result<()> {
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
-        Command::Soak(arguments) => soak::soak(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use drillsweep_sim::admission::validate;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
-use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::validation::validate;
 
 use crate::print;
 use crate::scenario::ScenarioArguments;

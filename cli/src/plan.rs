@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_scenario::Problems;
-use drillsweep_sim::admission::validate;
-use drillsweep_sim::study::footprint::Footprint;
-use drillsweep_sim::study::plan::{Plan, PlannedAccuracy};
-use drillsweep_sim::transient::step_problem;
+use drillsweep_sim::solve::step::step_problem;
+use drillsweep_sim::validation::validate;
+use drillsweep_study::footprint::Footprint;
+use drillsweep_study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
 use serde_json::json;
 

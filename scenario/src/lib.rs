@@ -1,7 +1,7 @@
 //! A scenario: everything that decides the numbers of one run.
 //!
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
-//! refused. The types say what can be written down; what can be simulated is checked by `drillsweep_sim::admission`.
+//! refused. The types say what can be written down; what can be simulated is checked by `drillsweep_sim::validation`.
 
 mod accuracy;
 mod effects;

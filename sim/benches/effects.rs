@@ -4,9 +4,9 @@
 use divan::Bencher;
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::Transient;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::Transient;
+use drillsweep_sim::solve::statics::Equilibrium;
 
 /// Simulated time of one run \[s\]: 100 steps.
 const DURATION: f64 = 0.05;

@@ -5,8 +5,8 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, WallLaw};
-use drillsweep_sim::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
-use drillsweep_sim::linalg::{
+use drillsweep_sim::force::contact::{ContactNode, ContactParameters, LateralMotion, dynamic_contact};
+use drillsweep_sim::math::linalg::{
     Block, BlockTridiagonal, BlockVector, Factor, MatrixPair, NodalField, SkewPart, Symmetric,
 };
 

@@ -3,9 +3,9 @@
 
 use divan::Bencher;
 use drillsweep_scenario::preset;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{ModeSearch, modes, stability};
-use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::{ModeSearch, modes, stability};
+use drillsweep_sim::solve::statics::Equilibrium;
 
 fn main() {
     divan::main();

@@ -7,10 +7,10 @@ use std::hint::black_box;
 
 use drillsweep_scenario::{Accuracy, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric};
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{Outcome, Transient};
+use drillsweep_sim::math::linalg::{BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, Symmetric};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
 
 /// Bytes of a block.
 const BLOCK: usize = 36 * 8;

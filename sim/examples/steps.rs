@@ -8,11 +8,11 @@
 use std::error::Error;
 
 use drillsweep_scenario::{Accuracy, Integrator, NodeChoice, TimeStepping, preset};
-use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{Outcome, Transient};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::validation::validate;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [method, steps] = &std::env::args().skip(1).collect::<Vec<_>>()[..] else {

@@ -1,13 +1,14 @@
 //! The dynamics of a drillstring in a 3D well, with mud, borehole contact and friction.
 //!
-//! The crate reads as one sentence: a [scenario](drillsweep_scenario) becomes a `model` (mesh and matrices of the effects in
-//! play), the model has an equilibrium (`statics`), the equilibrium a hydraulic profile ([`mud`]), and from
-//! there a `transient` yields records, from which orbits and full spectra are cut ([`signal`]).
+//! A [scenario](drillsweep_scenario) becomes a [`Model`](solve::model::Model): mesh, and matrices of its active effects. The model has an
+//! [`Equilibrium`](solve::statics::Equilibrium) with a hydraulic profile ([`force::mud`]); from there a
+//! [`Transient`](solve::run::Transient) yields records, from which orbits and full spectra are computed ([`math::signal`]). Five storeys hold it,
+//! each above those that it uses: [`math`], [`string`], [`force`], [`solve`], [`validation`].
 //!
 //! ```
-//! use drillsweep_sim::model::Model;
-//! use drillsweep_sim::modes::{ModeSearch, modes};
-//! use drillsweep_sim::statics::Equilibrium;
+//! use drillsweep_sim::solve::model::Model;
+//! use drillsweep_sim::solve::modes::{ModeSearch, modes};
+//! use drillsweep_sim::solve::statics::Equilibrium;
 //!
 //! let scenario = drillsweep_scenario::preset("paper-200m").unwrap();
 //! let model = Model::new(&scenario)?;
@@ -21,30 +22,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! SI units throughout. Nothing here knows of files, clocks, threads, SQL or HTTP: the same scenario gives
-//! the same bits wherever it runs.
+//! SI units throughout. The crate uses no files, clocks, threads, SQL or HTTP: the same scenario gives the same bits on every machine.
 
-pub mod admission;
-pub mod beam;
-pub mod canonical;
-pub mod contact;
 pub mod control;
-pub mod drive;
-pub mod effect;
-mod force;
-pub mod freedom;
-pub mod linalg;
-pub mod model;
-pub mod modes;
-pub mod motion;
-pub mod mud;
-pub mod signal;
-pub mod statics;
+pub mod force;
+pub mod key;
+pub mod math;
+pub mod solve;
 pub mod string;
-pub mod study;
-mod term;
-pub mod transient;
-pub mod well;
+pub mod validation;
 
 /// Version of the numbers: raised by hand whenever the same scenario may give other results, and part of every
 /// result's key.

@@ -2,11 +2,11 @@
 
 use allocation_counter::measure;
 use drillsweep_scenario::{Accuracy, Integrator, OrbitWindow, Snapshots, TimeStepping, TimeWindow, preset};
-use drillsweep_sim::canonical::canonical_json;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{Outcome, Transient};
+use drillsweep_sim::key::canonical_json;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
 
 #[test]
 fn steps_allocate_nothing() {

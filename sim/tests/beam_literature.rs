@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 
 use common::{STEEL, StraightBeam, critical_factor, eigenvalues, frequencies, select};
 use drillsweep_scenario::preset;
-use drillsweep_sim::beam::BeamSection;
-use drillsweep_sim::mud::{FlowGeometry, FlowMomentum};
+use drillsweep_sim::force::mud::{FlowGeometry, FlowMomentum};
+use drillsweep_sim::string::beam::BeamSection;
 use nalgebra::DMatrix;
 
 const COLLAR: (f64, f64) = (0.159, 0.071);

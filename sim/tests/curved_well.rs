@@ -1,10 +1,10 @@
 //! A string in a curved hole: rigid motion, torque, bending, effective tension, contact load.
 
 use drillsweep_scenario::{Effect, Scenario, SurveyStation, Switch, preset};
-use drillsweep_sim::linalg::{BlockTridiagonal, Factor};
-use drillsweep_sim::model::{GRAVITY, Model, add_element_matrix, add_element_vector, element_values};
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::well::WellPath;
+use drillsweep_sim::math::linalg::{BlockTridiagonal, Factor};
+use drillsweep_sim::solve::model::{GRAVITY, Model, add_element_matrix, add_element_vector, element_values};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::string::well::WellPath;
 use nalgebra::Vector3;
 
 fn base() -> Scenario {
@@ -206,7 +206,7 @@ fn curved_wells_tension_torque_and_side_force_match_a_soft_string() {
 
 #[test]
 fn statics_from_quite_different_starts_give_one_equilibrium() {
-    use drillsweep_sim::statics::NewtonSettings;
+    use drillsweep_sim::solve::statics::NewtonSettings;
     let model = Model::new(&base()).expect("valid");
     let reference = Equilibrium::find(&model).expect("rests");
     let n = model.node_count();

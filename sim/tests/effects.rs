@@ -2,16 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
-use drillsweep_scenario::{
-    Accuracy, AutoRule, CostStudy, Effect, Integrator, Scenario, Switch, TimeStepping, preset,
-};
-use drillsweep_sim::admission::validate;
+use drillsweep_scenario::{Accuracy, AutoRule, Effect, Integrator, Scenario, Switch, TimeStepping, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::effect::{active_effects, decide_effects};
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::cost::{Measure, Role, plan, report};
-use drillsweep_sim::transient::{Outcome, Records, Transient};
+use drillsweep_sim::force::effect::decide_effects;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Records, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
 
 const METHODS: [(Integrator, f64); 3] =
     [(Integrator::GeneralizedAlpha, 5e-4), (Integrator::Esdirk4, 1e-3), (Integrator::Rk4, 5e-5)];
@@ -185,56 +181,4 @@ fn fewer_degrees_of_freedom_resume_to_the_same_bits() {
         let Ok(Outcome::Finished(resumed)) = resumed else { panic!("not finished: {resumed:?}") };
         assert_eq!(*resumed, whole);
     }
-}
-
-#[test]
-fn an_ablation_takes_one_effect_away_at_a_time_and_tells_what_changes() {
-    let mut scenario = base(0.1, METHODS[1]);
-    scenario.mud.as_mut().unwrap().flow_rate = 0.0;
-    scenario.cost_study = Some(CostStudy { effects: true, ..CostStudy::default() });
-    validate(&scenario).unwrap();
-    let planned = plan(&scenario).unwrap();
-    let whole = active_effects(&planned[0].scenario);
-    assert_eq!((planned[0].role, planned[1].role), (Role::Reference, Role::Twin));
-    let mut without = Vec::new();
-    for run in &planned[2..] {
-        let Role::Without { effect } = run.role else { panic!("{:?}", run.role) };
-        let active = active_effects(&run.scenario);
-        let changed = Effect::ALL.iter().filter(|&&other| active.is_active(other) != whole.is_active(other));
-        assert_eq!(changed.copied().collect::<Vec<_>>(), [effect]);
-        without.push(effect);
-    }
-    // What still mud does not call for is not there to be taken away, nor is the run itself.
-    for absent in [Effect::FluidCoriolis, Effect::FlowStiffness, Effect::MudDrag, Effect::Transient] {
-        assert!(!without.contains(&absent));
-    }
-    assert_eq!(without.len(), Effect::ALL.len() - 4);
-
-    let measured: Vec<_> = planned
-        .iter()
-        .map(|planned| {
-            let model = Model::new(&planned.scenario).unwrap();
-            let equilibrium = Equilibrium::find(&model).map_err(|error| error.to_string())?;
-            let transient = Transient::member(&model, &equilibrium, planned.members.start).unwrap();
-            match transient.run(&Control::new()) {
-                Ok(Outcome::Finished(records)) => {
-                    Ok((Measure::new(&model, &equilibrium, &records, planned.members.start), 1.0))
-                }
-                other => Err(format!("{other:?}")),
-            }
-        })
-        .map(|run| vec![run])
-        .collect();
-    let report = report(&scenario, &planned, &measured).unwrap();
-    assert!(report.methods.is_empty() && report.recommendations.is_empty());
-    let row = |effect| report.effects.iter().find(|row| row.effect == Some(effect)).unwrap();
-    // Without its wall the string is buckled by the weight on bit.
-    assert!(row(Effect::Contact).failure.as_ref().unwrap().contains("no equilibrium"));
-    let change = |effect| row(effect).errors.clone().unwrap();
-    // Buoyancy moves the string at rest; what acts on motion alone does not.
-    assert!(change(Effect::Buoyancy).static_position > 1e-3);
-    assert!(change(Effect::FluidAddedMass).static_position < 1e-14);
-    assert!(change(Effect::FluidAddedMass).trajectory.unwrap() > 0.01);
-    // Gyroscopic moments are small at this speed: rho I Omega / sqrt(m E I) is 1e-4 for these collars.
-    assert!(change(Effect::Gyroscopic).trajectory.unwrap() < 0.01);
 }

@@ -6,14 +6,16 @@ use drillsweep_scenario::{
     Effect, Gauge, Material, Mud, PRESETS, Scenario, Section, SectionKind, StartFriction, SurveyStation,
     Switch, preset,
 };
-use drillsweep_sim::beam::BeamSection;
-use drillsweep_sim::contact::{
+use drillsweep_sim::force::contact::{
     LateralMotion, SegmentForce, SegmentMotion, dynamic_contact, dynamic_segment, planes, static_segment,
 };
-use drillsweep_sim::model::{GRAVITY, Model, element_values};
-use drillsweep_sim::mud::element_flow;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::soak;
+use drillsweep_sim::force::mud::element_flow;
+use drillsweep_sim::solve::model::{GRAVITY, Model, element_values};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::string::beam::BeamSection;
+use random_scenario::random_scenario;
+
+mod random_scenario;
 
 /// A horizontal string of one section without mud, friction and torque.
 fn horizontal(length: f64, diameters: [f64; 2], element: f64) -> Scenario {
@@ -328,35 +330,35 @@ fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
 
 #[test]
 fn strings_under_strong_friction_rest_in_balance() {
-    // Random scenes in which no path from the unloaded string or from a wall without friction leads to an equilibrium.
+    // Random scenarios in which no path from the unloaded string or from a wall without friction leads to an equilibrium.
     for index in [4, 14, 155, 207, 265, 308, 390] {
-        let model = Model::new(&soak::scene(1, index)).unwrap();
-        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
-        assert!(rest.normal_force.iter().any(|force| *force > 0.0), "scene {index}");
+        let model = Model::new(&random_scenario(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scenario {index}: {error}"));
+        assert!(rest.normal_force.iter().any(|force| *force > 0.0), "scenario {index}");
         let left = unbalanced(&model, &rest);
-        assert!(left < 1e-9, "scene {index}: {left:e}");
+        assert!(left < 1e-9, "scenario {index}: {left:e}");
     }
 }
 
 #[test]
 fn strings_whose_drag_depends_strongly_on_where_they_lie_rest_in_balance() {
-    // Random scenes in which drag and position, computed from each other in turn, alternate or converge slowly.
+    // Random scenarios in which drag and position, computed from each other in turn, alternate or converge slowly.
     for index in [9, 279, 416, 630, 2004, 2485, 3896] {
-        let model = Model::new(&soak::scene(1, index)).unwrap();
-        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
+        let model = Model::new(&random_scenario(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scenario {index}: {error}"));
         let left = unbalanced(&model, &rest);
-        assert!(left < 1e-9, "scene {index}: {left:e}");
+        assert!(left < 1e-9, "scenario {index}: {left:e}");
     }
 }
 
 #[test]
 fn a_string_that_nothing_holds_stays_on_the_axis_of_a_vertical_hole() {
-    // Random scenes of short strings that are pinned in a vertical hole, without friction or stiffening by tension.
+    // Random scenarios of short strings that are pinned in a vertical hole, without friction or stiffening by tension.
     for index in [274, 3113] {
-        let model = Model::new(&soak::scene(1, index)).unwrap();
-        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scene {index}: {error}"));
-        assert!(rest.displacement.iter().all(|[u, v, ..]| *u == 0.0 && *v == 0.0), "scene {index}");
-        assert!(unbalanced(&model, &rest) < 1e-9, "scene {index}");
+        let model = Model::new(&random_scenario(1, index)).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scenario {index}: {error}"));
+        assert!(rest.displacement.iter().all(|[u, v, ..]| *u == 0.0 && *v == 0.0), "scenario {index}");
+        assert!(unbalanced(&model, &rest) < 1e-9, "scenario {index}");
     }
 }
 

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use annulus::{Annulus, YieldPowerLaw, piercy_flow_rate};
 use drillsweep_scenario::{Mud, RegimeChoice};
-use drillsweep_sim::mud::{
+use drillsweep_sim::force::mud::{
     ElementFlow, FlowGeometry, MudError, PressureStep, Regime, SectionFlow, element_flow, pressures,
 };
 use nalgebra::{Complex, Matrix4, Vector4};

@@ -6,15 +6,15 @@ use std::f64::consts::{PI, TAU};
 
 use common::{STEEL, eigenvalues};
 use drillsweep_scenario::{Effect, Material, Scenario, Section, Switch, preset};
-use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
-use drillsweep_sim::effect::active_effects;
-use drillsweep_sim::linalg::BlockTridiagonal;
-use drillsweep_sim::model::{Model, add_element_matrix};
-use drillsweep_sim::modes::{
+use drillsweep_sim::force::effect::active_effects;
+use drillsweep_sim::math::linalg::BlockTridiagonal;
+use drillsweep_sim::solve::model::{Model, add_element_matrix};
+use drillsweep_sim::solve::modes::{
     Completeness, InstabilityKind, Mode, ModeKind, ModeSearch, Modes, Pencil, Receptance, Stability, modes,
     modes_of, static_stability,
 };
-use drillsweep_sim::statics::Equilibrium;
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::string::beam::{BeamElement, BeamSection, ElementMatrix};
 use nalgebra::DMatrix;
 
 fn base() -> Scenario {

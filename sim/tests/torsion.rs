@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use drillsweep_scenario::{Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{ModeKind, ModeSearch, UndampedTorsion, modes, torsional_modes};
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::{ModeKind, ModeSearch, UndampedTorsion, modes, torsional_modes};
+use drillsweep_sim::solve::run::{NodeHistory, Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
 
 fn at_rest(scenario: &Scenario) -> (Model, Equilibrium) {
     let model = Model::new(scenario).expect("has a model");

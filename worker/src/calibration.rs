@@ -2,10 +2,10 @@
 
 use drillsweep_scenario::{Scenario, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::plan::{MachineSpeed, RunTime, calibration_runs};
-use drillsweep_sim::transient::{Outcome, Transient};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_study::plan::{MachineSpeed, RunTime, calibration_runs};
 
 use crate::error::ComputeError;
 use crate::stopwatch::Stopwatch;

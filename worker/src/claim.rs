@@ -10,11 +10,11 @@ use drillsweep_api::{FailureClass, PointError, compose};
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::study::footprint::Footprint;
 use drillsweep_store::{
     BlobId, Claim, Finished, Lease, NamedFile, NewArtifact, NewResult, Renewal, Role, Store, StoreConfig,
     StoreError, WorkerRecord, with_backoff,
 };
+use drillsweep_study::footprint::Footprint;
 use jiff::Timestamp;
 use prometheus_client::registry::Registry;
 use serde_json::{Value, json};

@@ -4,22 +4,22 @@ use std::path::Path;
 
 use drillsweep_scenario::{Scenario, Starts};
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::modes::{Stability, UndampedTorsion, stability, static_stability};
-use drillsweep_sim::signal::sample_range;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::cost::{CostReport, Recommendation};
-use drillsweep_sim::study::ensemble::{distances, parting_time};
-use drillsweep_sim::study::errors::{OtherMember, ResultErrors};
-use drillsweep_sim::study::mesh_estimate::MeshEstimate;
-use drillsweep_sim::study::sensitivity::{Sensitivity, SensitivityError};
-use drillsweep_sim::study::starts::StartsCompared;
-use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{
+use drillsweep_sim::math::signal::sample_range;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::{Stability, UndampedTorsion, stability, static_stability};
+use drillsweep_sim::solve::run::{
     Block, CheckpointError, Histories, Outcome, Records, Transient, TransientError, recorded_nodes, twin_time,
 };
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::validation::validate;
+use drillsweep_study::cost::{CostReport, Recommendation};
+use drillsweep_study::ensemble::{distances, parting_time};
+use drillsweep_study::errors::{OtherMember, ResultErrors};
+use drillsweep_study::mesh_estimate::MeshEstimate;
+use drillsweep_study::sensitivity::{Sensitivity, SensitivityError};
+use drillsweep_study::starts::StartsCompared;
+use drillsweep_study::summary::{StaticsSummary, TransientSummary};
 use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
@@ -368,7 +368,7 @@ mod tests {
     use drillsweep_scenario::{
         Effect, NodeChoice, OrbitOutputs, Outputs, Snapshots, Switch, TimeWindow, preset,
     };
-    use drillsweep_sim::study::footprint::Footprint;
+    use drillsweep_study::footprint::Footprint;
     use drillsweep_table::quantity::{Name, Place, columns, tables};
     use drillsweep_table::{Column, Table, parquet};
 

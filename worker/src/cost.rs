@@ -1,13 +1,13 @@
 //! A work-precision study: its runs side by side on all cores, each with its own processor time.
 
 use drillsweep_scenario::Scenario;
-use drillsweep_sim::admission::validate;
 use drillsweep_sim::control::Control;
-use drillsweep_sim::model::Model;
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::cost::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
-use drillsweep_sim::study::plan::MachineSpeed;
-use drillsweep_sim::transient::{Outcome, Transient};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::validation::validate;
+use drillsweep_study::cost::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
+use drillsweep_study::plan::MachineSpeed;
 use rayon::prelude::*;
 
 use crate::error::ComputeError;

@@ -2,11 +2,11 @@
 
 use drillsweep_api::{FailureClass, PointError};
 use drillsweep_scenario::StartFriction;
-use drillsweep_sim::model::ModelError;
-use drillsweep_sim::modes::Stability;
-use drillsweep_sim::statics::StaticsError;
-use drillsweep_sim::study::cost::StudyError;
-use drillsweep_sim::transient::TransientError;
+use drillsweep_sim::solve::model::ModelError;
+use drillsweep_sim::solve::modes::Stability;
+use drillsweep_sim::solve::run::TransientError;
+use drillsweep_sim::solve::statics::StaticsError;
+use drillsweep_study::cost::StudyError;
 use serde_json::{Map, json};
 
 use crate::artifact::ArtifactError;

@@ -1,9 +1,9 @@
 //! Where a result comes from: which code computed it, how, where, and at what cost.
 
 use drillsweep_scenario::TimeStepping;
-use drillsweep_sim::modes::UndampedTorsion;
-use drillsweep_sim::study::errors::ResultErrors;
-use drillsweep_sim::transient::{ErrorEstimate, Records};
+use drillsweep_sim::solve::modes::UndampedTorsion;
+use drillsweep_sim::solve::run::{ErrorEstimate, Records};
+use drillsweep_study::errors::ResultErrors;
 use jiff::Timestamp;
 use serde::Serialize;
 

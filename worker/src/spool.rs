@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use drillsweep_sim::transient::{
+use drillsweep_sim::solve::run::{
     Block, Checkpoint, CheckpointError, Histories, Series, SnapshotBlock, SnapshotSeries,
 };
 use serde::{Deserialize, Serialize};
@@ -340,9 +340,9 @@ impl Suspended {
 mod tests {
     use drillsweep_scenario::preset;
     use drillsweep_sim::control::Control;
-    use drillsweep_sim::model::Model;
-    use drillsweep_sim::statics::Equilibrium;
-    use drillsweep_sim::transient::{NodeHistory, Outcome, Transient};
+    use drillsweep_sim::solve::model::Model;
+    use drillsweep_sim::solve::run::{NodeHistory, Outcome, Transient};
+    use drillsweep_sim::solve::statics::Equilibrium;
 
     use super::*;
 

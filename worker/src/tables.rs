@@ -5,15 +5,15 @@ use std::ops::Range;
 use std::path::Path;
 
 use drillsweep_scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
-use drillsweep_sim::model::Model;
-use drillsweep_sim::signal::{FullSpectrum, Window, full_spectrum, sample_range};
-use drillsweep_sim::statics::Equilibrium;
-use drillsweep_sim::study::ensemble::spread;
-use drillsweep_sim::study::errors::OtherMember;
-use drillsweep_sim::study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_sim::transient::{
+use drillsweep_sim::math::signal::{FullSpectrum, Window, full_spectrum, sample_range};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{
     EnergyRow, Histories, OrbitInterval, Records, Series, Settling, SnapshotSeries, SnapshotTimes,
 };
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_study::ensemble::spread;
+use drillsweep_study::errors::OtherMember;
+use drillsweep_study::summary::{StaticsSummary, TransientSummary};
 use drillsweep_table::quantity::columns::*;
 use drillsweep_table::quantity::tables::{self, Layout};
 use drillsweep_table::quantity::{self, Place, Variant};

@@ -5,7 +5,7 @@
 use allocation_counter::measure;
 use drillsweep_scenario::{NodeChoice, Scenario, Snapshots, TimeWindow, preset};
 use drillsweep_sim::control::Control;
-use drillsweep_sim::study::footprint::Footprint;
+use drillsweep_study::footprint::Footprint;
 use drillsweep_worker::compute;
 
 /// The base case with many recorded nodes, at a draft's steps, for so long \[s\].

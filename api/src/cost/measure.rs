@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity};
+use drillsweep_study::cost::{CostReport, CostRow, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// The error that a chart shows.

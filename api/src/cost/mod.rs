@@ -12,16 +12,16 @@ pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary
 pub use table::table;
 pub use text::text;
 
-pub use drillsweep_sim::study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
+pub use drillsweep_study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
 
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::{Integrator, TimeWindow};
-    use drillsweep_sim::study::cost::{
+    use drillsweep_sim::solve::run::MotionRegime;
+    use drillsweep_study::cost::{
         Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NodeAgreement,
         NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, TotalChoice, TotalCost,
     };
-    use drillsweep_sim::transient::MotionRegime;
 
     use super::*;
 

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
-use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity, StatisticError};
+use drillsweep_study::cost::{CostReport, CostRow, Quantity, StatisticError};
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Serialize;
@@ -271,7 +271,7 @@ pub fn summary_text(rows: &[SummaryRow]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::study::cost::NodeStatistic;
+    use drillsweep_study::cost::NodeStatistic;
 
     use super::*;
     use crate::cost::tests::{report, row};

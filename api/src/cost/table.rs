@@ -1,6 +1,6 @@
 //! A cost study as a table.
 
-use drillsweep_sim::study::cost::{
+use drillsweep_study::cost::{
     CostErrors, CostReport, CostRow, LineErrors, MeshPart, Quantity, StatisticError, TotalChoice,
 };
 use drillsweep_table::quantity::columns::*;

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use drillsweep_scenario::Integrator;
-use drillsweep_sim::study::cost::{
+use drillsweep_study::cost::{
     Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshPart, NodeAgreement, Quantity,
     StatisticError, TotalCost,
 };
 
-use drillsweep_sim::transient::MotionRegime;
+use drillsweep_sim::solve::run::MotionRegime;
 
 use super::digits::{step_text, three_digits};
 

@@ -1,7 +1,7 @@
 //! The scenario that the points of a request share.
 
 use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest, unknown_preset};
-use drillsweep_sim::admission::validate;
+use drillsweep_sim::validation::validate;
 use indexmap::IndexSet;
 
 use super::expansion::{number, set_number};

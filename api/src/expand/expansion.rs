@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
 use drillsweep_sim::PHYSICS_VERSION;
-use drillsweep_sim::canonical::CanonicalJson;
+use drillsweep_sim::key::CanonicalJson;
 use indexmap::IndexMap;
 use serde_json::{Map, Value, json};
 

@@ -1,8 +1,8 @@
 //! The points of a request, validated.
 
 use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
-use drillsweep_sim::admission::{validate, validate_changes};
-use drillsweep_sim::transient::step_problem;
+use drillsweep_sim::solve::step::step_problem;
+use drillsweep_sim::validation::{validate, validate_changes};
 
 use super::expansion::{Expansion, Keys, SweepPoint, set_number};
 use super::interruption::Interruption;

@@ -3,8 +3,8 @@
 use std::iter::{once, repeat};
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
-use drillsweep_sim::admission::{validate, validate_changes};
-use drillsweep_sim::effect::active_effects;
+use drillsweep_sim::force::effect::active_effects;
+use drillsweep_sim::validation::{validate, validate_changes};
 
 use super::expansion::{Expansion, Keys, SweepPoint, set_number};
 use super::interruption::Interruption;

@@ -1,6 +1,6 @@
 //! The full spectrum of one node's orbit.
 
-use drillsweep_sim::signal::{PeakSearch, full_spectrum};
+use drillsweep_sim::math::signal::{PeakSearch, full_spectrum};
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::orbit::Motion;
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
-pub use drillsweep_sim::signal::{FullSpectrum, Window as Weighting};
+pub use drillsweep_sim::math::signal::{FullSpectrum, Window as Weighting};
 
 /// Two lines closer than so many bins are one: the rest is its leakage.
 const LINE_WIDTH_BINS: f64 = 2.0;

@@ -1,6 +1,6 @@
 //! Where the orbits of a window lie and how large they are.
 
-use drillsweep_sim::signal::{OrbitStatistics, orbit_statistics};
+use drillsweep_sim::math::signal::{OrbitStatistics, orbit_statistics};
 use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{At, Dependence, ForceScene, NodalForce};
-use crate::freedom::{DOFS, THETA_Z, W};
+use crate::force::nodal::{At, Dependence, ForceScene, NodalForce};
+use crate::math::dof::{DOFS, THETA_Z, W};
 
 /// The force of a scenario's weight and torque on bit.
 pub(super) fn force(scene: &ForceScene<'_>) -> Option<Arc<dyn NodalForce>> {

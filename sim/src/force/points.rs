@@ -5,15 +5,16 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{At, Dependence, ENTRIES, NodalForce, NodeCompliance, NodeMotion};
-use crate::freedom::{DOFS, Freedoms};
-use crate::linalg::{InverseBands, NodalField};
+use crate::force::list::ENTRIES;
+use crate::force::nodal::{At, Dependence, NodalForce, NodeCompliance, NodeMotion};
+use crate::math::dof::{DOFS, Dofs};
+use crate::math::linalg::{InverseBands, NodalField};
 
 /// Forces at a few nodes but the constant ones, which are part of the load.
 #[derive(Debug, Clone)]
 pub(crate) struct PointForces<const D: usize> {
     points: Vec<Point>,
-    freedoms: Freedoms<D>,
+    freedoms: Dofs<D>,
     /// Nodes of all forces, one after the other.
     sites: usize,
     follows_motion: bool,
@@ -60,7 +61,7 @@ impl PointState {
 
 impl<const D: usize> PointForces<D> {
     /// Forces on a string that solves for the degrees of freedom `freedoms`.
-    pub(crate) fn new(forces: &[Arc<dyn NodalForce>], freedoms: Freedoms<D>) -> Self {
+    pub(crate) fn new(forces: &[Arc<dyn NodalForce>], freedoms: Dofs<D>) -> Self {
         let (mut sites, mut unknowns) = (0, 0);
         let next = |count: &mut usize, more: usize| {
             *count += more;

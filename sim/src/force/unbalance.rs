@@ -4,11 +4,11 @@
 
 use std::sync::Arc;
 
-use super::{At, Dependence, ForceScene, NodalForce};
-use crate::drive::Drive;
-use crate::freedom::{DOFS, LATERAL, U, V};
+use crate::force::drive::Drive;
+use crate::force::nodal::{At, Dependence, ForceScene, NodalForce};
+use crate::force::term::{Account, Call, Scene, Term, no, yes};
+use crate::math::dof::{DOFS, LATERAL, U, V};
 use crate::string::MeshNode;
-use crate::term::{Account, Call, Scene, Term, no, yes};
 
 pub(crate) const TERM: Term = Term::new(called_for);
 

@@ -8,11 +8,11 @@
 //! - What lies on the wall by itself presses it in over (4 E I / kappa)^(1/4) from a place that holds it off (Hetenyi 1946), 1.06 m for
 //!   collars of 0.159 m.
 //!
-//! `sim/tests/contact_mesh.rs` compares where strings rest in three wells with much finer meshes, and docs/accuracy.md has settled orbits.
+//! `study/tests/contact_mesh.rs` compares where strings rest in three wells with much finer meshes, and docs/accuracy.md has settled orbits.
 
 use drillsweep_scenario::{Scenario, Section};
 
-use crate::beam::BeamSection;
+use crate::string::beam::BeamSection;
 
 /// Elements of a tool joint.
 const JOINT_ELEMENTS: f64 = 1.0;

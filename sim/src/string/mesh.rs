@@ -3,7 +3,6 @@
 use drillsweep_scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
 
 use super::boundaries;
-use crate::contact::ContactNode;
 
 /// A string of more elements than this is refused.
 pub const MAX_ELEMENTS: usize = 20_000;
@@ -111,18 +110,6 @@ pub struct MeshNode {
     pub is_gauge: bool,
     /// The masses put here.
     pub unbalance: Vec<NodeUnbalance>,
-}
-
-impl MeshNode {
-    /// Contact data of the node.
-    pub fn site(&self) -> ContactNode<f64> {
-        ContactNode {
-            clearance: self.clearance,
-            contact_radius: self.contact_radius,
-            stiffness_share: self.stiffness_share,
-            damping_share: self.damping_share,
-        }
-    }
 }
 
 /// The mesh of a string: nodes from the top down and the elements between them.

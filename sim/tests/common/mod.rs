@@ -3,7 +3,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 use drillsweep_scenario::Material;
-use drillsweep_sim::beam::{BeamElement, BeamSection, ElementMatrix};
+use drillsweep_sim::string::beam::{BeamElement, BeamSection, ElementMatrix};
 use nalgebra::{Complex, DMatrix};
 
 pub const STEEL: Material = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };

@@ -1,10 +1,10 @@
-//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::contact`], which the time step asks for
+//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::force::contact`], which the time step asks for
 //! four nodes side by side.
 
 use super::{FRICTION_WORK, NORMAL_WORK};
-use crate::freedom::LATERAL;
-use crate::linalg::Lane;
-use crate::term::{Account, Call, Scene, Term, yes};
+use crate::force::term::{Account, Call, Scene, Term, yes};
+use crate::math::dof::LATERAL;
+use crate::math::linalg::Lane;
 
 pub(crate) const TERM: Term = Term::new(called_for);
 

@@ -1,12 +1,12 @@
 //! Tangential friction at contacts: without it the wall pushes along its normal alone.
 //!
-//! Its law is in [`crate::contact`], not here: friction is a coefficient times the normal force, at the penetration and the sliding speed
+//! Its law is in [`crate::force::contact`], not here: friction is a coefficient times the normal force, at the penetration and the sliding speed
 //! that the normal force is found with, and an implicit solve makes both agree with one motion. Apart, each would look for the node on
 //! the wall again, four nodes at a time in the innermost loop of a step.
 
 use super::{FRICTION_WORK, ROTATION_WORK};
-use crate::linalg::Lane;
-use crate::term::{Account, Term, has_friction};
+use crate::force::term::{Account, Term, has_friction};
+use crate::math::linalg::Lane;
 
 pub(crate) const TERM: Term = Term::new(has_friction);
 

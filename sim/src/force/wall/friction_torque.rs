@@ -1,8 +1,8 @@
-//! Friction torque about the string's axis at contacts: without it rubbing does not twist the string. Its law is [`crate::contact`], with
+//! Friction torque about the string's axis at contacts: without it rubbing does not twist the string. Its law is [`crate::force::contact`], with
 //! that of [friction](super::friction).
 
 use super::ROTATION_WORK;
-use crate::term::{Account, Term, has_friction};
+use crate::force::term::{Account, Term, has_friction};
 
 pub(crate) const TERM: Term = Term::new(has_friction);
 

@@ -1,13 +1,13 @@
 //! Forces of the wall in motion.
 
 use super::segments::{LawAlong, SegmentForces, Segments};
-use crate::contact::{
+use crate::force::contact::{
     ContactForce, ContactNode, ContactParameters, ContactSegment, LateralMotion, SegmentCompliance,
     SegmentForce, SegmentMotion, Surface, Wall, Yielding, dynamic_contact, dynamic_segment, implicit_contact,
     implicit_segment,
 };
-use crate::freedom::{Freedoms, U, V};
-use crate::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
+use crate::math::dof::{Dofs, U, V};
+use crate::math::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
 
 /// Contact forces of one evaluation: at nodes, four side by side, and along elements.
 #[derive(Debug, Clone)]
@@ -186,7 +186,7 @@ pub(crate) struct WallForces<const D: usize> {
     /// Groups of which the wall pushes any node as a node: all, or those of gauges if it acts along elements.
     pushed: Vec<bool>,
     segments: Segments<D>,
-    freedoms: Freedoms<D>,
+    freedoms: Dofs<D>,
 }
 
 impl<const D: usize> WallForces<D> {
@@ -194,7 +194,7 @@ impl<const D: usize> WallForces<D> {
     pub(crate) fn new(
         wall: &Wall,
         acts: bool,
-        freedoms: Freedoms<D>,
+        freedoms: Dofs<D>,
         held: &[[bool; D]],
         rotation_speed: f64,
     ) -> Self {

@@ -1,6 +1,6 @@
 //! The wall: normal contact, friction and its torque at all nodes and along elements, four side by side.
 //!
-//! The law is [`crate::contact`]. Its three effects share one evaluation: friction is a coefficient times the normal force, at the penetration and the
+//! The law is [`crate::force::contact`]. Its three effects share one evaluation: friction is a coefficient times the normal force, at the penetration and the
 //! sliding speed that the normal force is found with, and an implicit solve makes both agree with one motion.
 
 pub(crate) mod contact;

@@ -4,19 +4,19 @@
 //! each of them.
 
 use super::lanes::SweepChange;
-use crate::contact::{
+use crate::force::contact::{
     ContactNode, ContactParameters, ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion,
     Surface, Wall, dot,
 };
-use crate::freedom::{Freedoms, THETA_X, THETA_Y, U, V};
-use crate::linalg::{Four, InverseBands, Lane, NodalField, next_lane};
+use crate::math::dof::{Dofs, THETA_X, THETA_Y, U, V};
+use crate::math::linalg::{Four, InverseBands, Lane, NodalField, next_lane};
 
 /// Elements as they meet the wall; empty if the nodes alone do.
 #[derive(Debug, Clone)]
 pub(crate) struct Segments<const D: usize> {
     /// Elements that do not exist have a clearance that nothing reaches.
     groups: Vec<ContactSegment<Four>>,
-    freedoms: Freedoms<D>,
+    freedoms: Dofs<D>,
     /// Places of theta_x and theta_y in a node's values.
     bending: [usize; 2],
     /// Degrees of freedom that the wall does not move, as (node, degree of freedom).
@@ -81,7 +81,7 @@ impl SegmentForces {
 }
 
 impl<const D: usize> Segments<D> {
-    pub(super) fn new(wall: &Wall, freedoms: Freedoms<D>, held: &[[bool; D]], rotation_speed: f64) -> Self {
+    pub(super) fn new(wall: &Wall, freedoms: Dofs<D>, held: &[[bool; D]], rotation_speed: f64) -> Self {
         let groups = wall.segments().chunks(LANES).map(|segments| {
             let lanes = |value: fn(&ContactSegment<f64>) -> f64, never: f64| {
                 Four::new(std::array::from_fn(|lane| segments.get(lane).map_or(never, value)))

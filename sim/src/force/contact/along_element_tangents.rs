@@ -1,0 +1,268 @@
+//! Loads of the wall on an element at rest and about steady sliding, with their derivatives.
+
+use nalgebra::SMatrix;
+
+use super::along_element::{ContactSegment, Place, Plane};
+use super::law::ContactParameters;
+use super::{ContactNode, smooth_static_contact};
+use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
+use crate::string::beam::{ElementMatrix, ElementVector};
+
+/// Loads of the wall on an element at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticSegmentForce {
+    /// Consistent nodal loads \[N, N m\].
+    pub force: ElementVector,
+    /// Their derivatives by the nodal values; without friction the second derivatives of an energy, to the square of the angle by which the normal turns along the
+    /// element.
+    pub tangent: ElementMatrix,
+    /// Normal forces \[N\], shared between the upper and the lower node.
+    pub ends: [f64; 2],
+}
+
+/// Loads of a wall of growing sharpness and friction on an element at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmoothSegmentForce {
+    /// Consistent nodal loads \[N, N m\].
+    pub force: ElementVector,
+    /// Their derivatives by the nodal values.
+    pub tangent: ElementMatrix,
+    /// Their derivatives by the width of the wall.
+    pub by_width: ElementVector,
+    /// Their derivatives by the share of the friction.
+    pub by_friction: ElementVector,
+}
+
+/// Derivatives of the wall's loads on an element about a state without vibration, with the sign of a left-hand side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlidingSegmentTangent {
+    /// By the nodal values.
+    pub stiffness: ElementMatrix,
+    /// By their rates.
+    pub damping: ElementMatrix,
+    /// Change of the friction torque by the twist's rate, shared between the upper and the lower node \[N m s\]; negative where friction feeds
+    /// torsion.
+    pub rubbing: [f64; 2],
+}
+
+/// Nodal values of an element in the planes of u and of v, as [`Plane`] has them.
+pub fn planes(values: &ElementVector) -> [Plane<f64>; 2] {
+    [
+        [values[U], values[THETA_Y], values[DOFS + U], values[DOFS + THETA_Y]],
+        [values[V], -values[THETA_X], values[DOFS + V], -values[DOFS + THETA_X]],
+    ]
+}
+
+/// Loads of the quasi-static force (36) along an element with given nodal values, and their tangent; `None` without contact.
+pub fn static_segment(
+    law: &ContactParameters<f64>,
+    segment: &ContactSegment<f64>,
+    values: &ElementVector,
+    rotation_speed: f64,
+) -> Option<StaticSegmentForce> {
+    let friction = law.friction_at_rest(&segment.wall, rotation_speed);
+    let elastic = Elastic::of(law, segment, values, friction)?;
+    let mut force = ElementVector::zeros();
+    let mut ends = [0.0; 2];
+    for (point, direction) in &elastic.points {
+        force += point.rows.load(direction.map(|along| -point.normal * along));
+        ends[0] += (1.0 - point.at) * point.normal;
+        ends[1] += point.at * point.normal;
+    }
+    Some(StaticSegmentForce { force, tangent: -elastic.stiffness, ends })
+}
+
+/// The elastic force of the wall along an element, with a friction in proportion to it.
+struct Elastic {
+    /// The points that it acts at, with its direction there: along u and v, and the arm of its torque \[m\].
+    points: [(PressedPoint, [f64; 3]); 2],
+    /// Its derivatives by the nodal values, with the sign of a left-hand side.
+    stiffness: ElementMatrix,
+    /// Damping of the law over the part in the wall \[N s/m\].
+    damping: f64,
+}
+
+/// A point that carries a part of the wall's force.
+struct PressedPoint {
+    at: f64,
+    rows: Rows,
+    /// Unit vector (u, v) from the axis.
+    outwards: [f64; 2],
+    /// Part of the whole that it carries.
+    part: f64,
+    /// Normal force \[N\].
+    normal: f64,
+}
+
+impl Elastic {
+    /// At nodal values, with a coefficient of friction; `None` without contact.
+    fn of(
+        law: &ContactParameters<f64>,
+        segment: &ContactSegment<f64>,
+        values: &ElementVector,
+        friction: f64,
+    ) -> Option<Self> {
+        let of_planes = planes(values);
+        let pressed = segment.pressed(&of_planes).filter(|pressed| pressed.depth > 0.0)?;
+        let share = segment.wall.stiffness_share;
+        let (stiffness, slope) = (law.stiffness(pressed.rms) * share, law.elastic_slope(pressed.rms) * share);
+        let (along, arm) =
+            (friction * law.tangential_share, friction * law.torque_share * segment.wall.contact_radius);
+        // The force is -F_n d with the direction d = n + mu t, which turns with n.
+        let direction = |[n_u, n_v]: [f64; 2]| [n_u - along * n_v, n_v + along * n_u, arm];
+        let mut sum = ElementMatrix::zeros();
+        let (mut pushed, mut inwards) = (ElementVector::zeros(), ElementVector::zeros());
+        let points = [0, 1].map(|k| {
+            let (place, part) = (pressed.places[k], pressed.parts[k]);
+            let rows = place.rows();
+            let (radius, outwards) = outwards(&rows, values);
+            let normal = part * stiffness * pressed.depth;
+            let along_wall = [-outwards[1], outwards[0]];
+            let turned = direction(along_wall);
+            let turns = normal / radius;
+            sum += rows.matrix(&[0, 1, 2].map(|row| {
+                let of_row = if row < 2 { turns * turned[row] } else { 0.0 };
+                [of_row * along_wall[0], of_row * along_wall[1], 0.0]
+            }));
+            pushed += rows.load(direction(outwards)) * (part * pressed.depth);
+            inwards += rows.load([outwards[0], outwards[1], 0.0]) * (part * pressed.depth);
+            (PressedPoint { at: place.at, rows, outwards, part, normal }, direction(outwards))
+        });
+        let normals = segment.normals(&of_planes).map(|(place, [n_u, n_v])| {
+            let Rows(rows) = place.rows();
+            (rows.row(0) * n_u + rows.row(1) * n_v).transpose()
+        });
+        for (place, weight) in segment.points_in_the_wall(&of_planes) {
+            let rows = place.rows();
+            let x = place.at;
+            let by_gaps = [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)];
+            let gap = normals
+                .iter()
+                .zip(by_gaps)
+                .fold(ElementVector::zeros(), |sum, (normal, by)| sum + normal * by);
+            let (_, outwards) = outwards(&rows, values);
+            sum += rows.load(direction(outwards)) * gap.transpose() * (weight * stiffness);
+        }
+        // The law stiffens with the root mean square penetration.
+        sum += pushed * inwards.transpose() * ((slope - stiffness) / (pressed.rms * pressed.rms));
+        let damping = law.damping(pressed.rms) * segment.wall.damping_share * pressed.share;
+        Some(Self { points, stiffness: sum, damping })
+    }
+}
+
+/// Distance from the axis \[m\], and the unit vector (u, v) from it, of a place in the wall.
+fn outwards(rows: &Rows, values: &ElementVector) -> (f64, [f64; 2]) {
+    let (u, v) = (rows.u(values), rows.v(values));
+    let radius = u.hypot(v).max(f64::MIN_POSITIVE);
+    (radius, [u / radius, v / radius])
+}
+
+/// Loads of [`smooth_static_contact`] at the Gauss points of the whole element. As the width vanishes they become those of contact at these fixed
+/// points, next to those of [`static_segment`].
+pub fn smooth_static_segment(
+    law: &ContactParameters<f64>,
+    segment: &ContactSegment<f64>,
+    values: &ElementVector,
+    rotation_speed: f64,
+    width: f64,
+    friction_share: f64,
+) -> SmoothSegmentForce {
+    let mut sum = SmoothSegmentForce {
+        force: ElementVector::zeros(),
+        tangent: ElementMatrix::zeros(),
+        by_width: ElementVector::zeros(),
+        by_friction: ElementVector::zeros(),
+    };
+    for (place, wall) in segment.whole() {
+        let rows = place.rows();
+        let position = [rows.u(values), rows.v(values)];
+        let contact = smooth_static_contact(law, &wall, position, rotation_speed, width, friction_share);
+        sum.force += rows.load(contact.force);
+        sum.tangent += rows.matrix(&with_column_of_twist(&contact.tangent));
+        sum.by_width += rows.load(contact.by_width);
+        sum.by_friction += rows.load(contact.by_friction);
+    }
+    sum
+}
+
+/// The tangent of the contact along an element that slides at the speed of rotation Omega \[rad/s\]; `None` without contact.
+pub fn sliding_segment(
+    law: &ContactParameters<f64>,
+    segment: &ContactSegment<f64>,
+    values: &ElementVector,
+    rotation_speed: f64,
+) -> Option<SlidingSegmentTangent> {
+    let radius = segment.wall.contact_radius;
+    let sliding_speed = rotation_speed * radius;
+    let elastic = Elastic::of(law, segment, values, law.friction_coefficient(sliding_speed))?;
+    let friction_slope = law.friction_slope(sliding_speed);
+    let mut damping = ElementMatrix::zeros();
+    let mut rubbing = [0.0; 2];
+    for (point, direction) in &elastic.points {
+        // As sliding_tangent has it of a node.
+        let [n_u, n_v] = point.outwards;
+        let (normal, tangent) = ([n_u, n_v, 0.0], [-n_v, n_u, radius]);
+        let rubbed = [-law.tangential_share * n_v, law.tangential_share * n_u, law.torque_share * radius];
+        let (damps, feeds) = (point.part * elastic.damping, point.normal * friction_slope);
+        let of_place = [0, 1, 2].map(|row| {
+            [0, 1, 2]
+                .map(|column| damps * direction[row] * normal[column] + feeds * rubbed[row] * tangent[column])
+        });
+        damping += point.rows.matrix(&of_place);
+        rubbing[0] += (1.0 - point.at) * of_place[2][2];
+        rubbing[1] += point.at * of_place[2][2];
+    }
+    Some(SlidingSegmentTangent { stiffness: elastic.stiffness, damping, rubbing })
+}
+
+/// The Gauss points of a whole element: rows that give u, v and the twist there from the nodal values, and the wall as each meets it.
+pub fn whole_segment(segment: &ContactSegment<f64>) -> [([ElementVector; 3], ContactNode<f64>); 2] {
+    segment.whole().map(|(place, wall)| {
+        let Rows(rows) = place.rows();
+        ([0, 1, 2].map(|row| rows.row(row).transpose()), wall)
+    })
+}
+
+/// Rows that give u, v and the twist at a place of an element from its nodal values.
+struct Rows(SMatrix<f64, 3, { 2 * DOFS }>);
+
+impl Place<f64> {
+    fn rows(&self) -> Rows {
+        let mut rows = SMatrix::zeros();
+        for (end, [deflection, turn]) in
+            [[self.shape[0], self.shape[1]], [self.shape[2], self.shape[3]]].into_iter().enumerate()
+        {
+            let node = DOFS * end;
+            (rows[(0, node + U)], rows[(0, node + THETA_Y)]) = (deflection, turn);
+            (rows[(1, node + V)], rows[(1, node + THETA_X)]) = (deflection, -turn);
+        }
+        (rows[(2, THETA_Z)], rows[(2, DOFS + THETA_Z)]) = (1.0 - self.at, self.at);
+        Rows(rows)
+    }
+}
+
+impl Rows {
+    fn u(&self, values: &ElementVector) -> f64 {
+        (self.0.row(0) * values)[0]
+    }
+
+    fn v(&self, values: &ElementVector) -> f64 {
+        (self.0.row(1) * values)[0]
+    }
+
+    /// Nodal loads of forces along u and v and a torque at the place.
+    fn load(&self, force: [f64; 3]) -> ElementVector {
+        self.0.transpose() * nalgebra::Vector3::from(force)
+    }
+
+    /// Nodal matrix of a matrix of the place.
+    fn matrix(&self, of_place: &[[f64; 3]; 3]) -> ElementMatrix {
+        let matrix = SMatrix::<f64, 3, 3>::from_fn(|row, column| of_place[row][column]);
+        self.0.transpose() * matrix * self.0
+    }
+}
+
+/// A tangent by u and v as one by u, v and the twist, on which contact at rest does not depend.
+fn with_column_of_twist(tangent: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {
+    tangent.map(|[by_u, by_v]| [by_u, by_v, 0.0])
+}

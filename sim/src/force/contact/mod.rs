@@ -1,0 +1,60 @@
+//! Borehole contact and friction, equations (10) to (14) and (36) (docs/model/contact.md).
+//!
+//! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
+//! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
+//! force in motion is [`dynamic_contact`], inside an implicit solve [`implicit_contact`], at rest [`static_contact`]; its
+//! linearisation about steady sliding is [`sliding_tangent`].
+//!
+//! If stiffness belongs to a length, the same law acts along the elements: [`dynamic_segment`], [`implicit_segment`],
+//! [`static_segment`] and [`sliding_segment`] integrate it over the stretch of a [`ContactSegment`] that is in the wall. Gauges remain points.
+
+mod along_element;
+mod along_element_tangents;
+mod law;
+mod motion;
+mod rest;
+mod sliding;
+mod wall;
+
+#[cfg(test)]
+mod tests;
+
+pub use along_element::{
+    ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion, dot, dynamic_segment,
+    implicit_segment,
+};
+pub use along_element_tangents::{
+    SlidingSegmentTangent, SmoothSegmentForce, StaticSegmentForce, planes, sliding_segment,
+    smooth_static_segment, static_segment, whole_segment,
+};
+pub use law::ContactParameters;
+pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
+pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
+pub use sliding::{SlidingTangent, sliding_tangent};
+pub use wall::Wall;
+
+use crate::string::MeshNode;
+
+/// Contact data of a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactNode<L> {
+    /// Radial clearance j0 \[m\].
+    pub clearance: L,
+    /// Radius R_e at which the string touches the wall \[m\].
+    pub contact_radius: L,
+    /// The node's largest stiffness over that of the law.
+    pub stiffness_share: L,
+    /// The node's largest damping over that of the law.
+    pub damping_share: L,
+}
+
+impl From<&MeshNode> for ContactNode<f64> {
+    fn from(node: &MeshNode) -> Self {
+        Self {
+            clearance: node.clearance,
+            contact_radius: node.contact_radius,
+            stiffness_share: node.stiffness_share,
+            damping_share: node.damping_share,
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Which effects a scene calls for, and why.
+
+use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
+use serde::Serialize;
+
+use super::term;
+use crate::force::term::{LateralWave, Scene};
+
+/// Change of frequencies below which the aggressive rule leaves an effect out.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// One effect of a scenario, decided.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct EffectDecision {
+    /// The effect.
+    pub effect: Effect,
+    /// Its switch in the scenario.
+    pub switch: Switch,
+    /// Whether it takes part.
+    pub active: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
+///
+/// `auto` leaves an effect out where the scene makes its term, or a motion, exactly zero, so that the
+/// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
+/// aggressive rule neglects what is small.
+pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
+    // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
+    let mut active = ActiveEffects::ALL;
+    let decide = |&effect: &Effect| {
+        let switch = scenario.effects.switch(effect);
+        let (is_active, reason) = match switch {
+            Switch::On => (true, "asked for".to_owned()),
+            Switch::Off => (false, "switched off".to_owned()),
+            Switch::Auto => {
+                let call = (term(effect).called_for)(&Scene { scenario, active: &active });
+                let change = frequency_change(scenario, effect);
+                let neglects = scenario.effects.auto == AutoRule::Aggressive;
+                if call.active && neglects && change < NEGLIGIBLE {
+                    (
+                        false,
+                        format!("left out as small: it changes frequencies by about {change:.0e} of them"),
+                    )
+                } else {
+                    (call.active, call.reason.to_owned())
+                }
+            }
+        };
+        active.set(effect, is_active);
+        EffectDecision { effect, switch, active: is_active, reason }
+    };
+    Effect::ALL.iter().map(decide).collect()
+}
+
+/// The effects that take part.
+pub fn active_effects(scenario: &Scenario) -> ActiveEffects {
+    let mut active = ActiveEffects::ALL;
+    for decision in decide_effects(scenario) {
+        active.set(decision.effect, decision.active);
+    }
+    active
+}
+
+/// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
+/// largest of any section; infinite where no such estimate is made.
+fn frequency_change(scenario: &Scenario, effect: Effect) -> f64 {
+    let Some(estimate) = term(effect).frequency_change else { return f64::INFINITY };
+    let of_section = |section| {
+        let change = estimate(&LateralWave::along(section, scenario));
+        // Without rotation there is no such wave.
+        if change.is_nan() { f64::INFINITY } else { change }
+    };
+    scenario.string.sections.iter().map(of_section).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_scenario::{Effects, SurveyStation, preset};
+
+    use super::*;
+    use crate::key::canonical_json;
+
+    fn paper() -> Scenario {
+        preset("paper-200m").unwrap()
+    }
+
+    /// Names of the effects that `auto` leaves out.
+    fn left_out(change: impl Fn(&mut Scenario)) -> Vec<&'static str> {
+        let mut scenario = paper();
+        scenario.effects = Effects::default();
+        change(&mut scenario);
+        let left_out = decide_effects(&scenario).into_iter().filter(|decision| !decision.active);
+        left_out.map(|decision| decision.effect.name()).collect()
+    }
+
+    #[test]
+    fn the_base_case_calls_for_everything() {
+        assert_eq!(left_out(|_| {}), [""; 0]);
+    }
+
+    #[test]
+    fn a_scene_calls_for_what_it_has() {
+        let fluid =
+            ["fluid_added_mass", "fluid_damping", "fluid_coriolis", "flow_stiffness", "mud_drag", "buoyancy"];
+        assert_eq!(left_out(|s| s.mud = None), fluid);
+        let still = |s: &mut Scenario| s.mud.as_mut().unwrap().flow_rate = 0.0;
+        assert_eq!(left_out(still), ["fluid_coriolis", "flow_stiffness", "mud_drag"]);
+        assert_eq!(left_out(|s| s.effects.gravity = Switch::Off), ["gravity", "buoyancy"]);
+        assert_eq!(left_out(|s| s.operation.rotation_speed_rpm = 0.0), ["unbalance", "gyroscopic"]);
+        assert_eq!(left_out(|s| s.string.unbalance.clear()), ["unbalance"]);
+        assert_eq!(left_out(|s| s.damping.mass_proportional = 0.0), ["structural_damping"]);
+        let nothing_in_time = |s: &mut Scenario| {
+            s.recording.nodes.clear();
+            s.recording.spectrum_windows = Some(Vec::new());
+            s.recording.orbit_window = None;
+        };
+        assert_eq!(left_out(nothing_in_time), ["transient"]);
+    }
+
+    #[test]
+    fn a_motion_that_nothing_drives_is_not_solved_for() {
+        let straighten = |s: &mut Scenario| {
+            for station in &mut s.well.survey {
+                (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+            }
+        };
+        assert_eq!(left_out(straighten), ["well_bending", "axial_motion"]);
+        let without_friction = |s: &mut Scenario| {
+            (s.contact.static_friction, s.contact.dynamic_friction) = (0.0, 0.0);
+        };
+        assert_eq!(left_out(without_friction), ["friction", "friction_torque"]);
+        let both = |s: &mut Scenario| {
+            straighten(s);
+            without_friction(s);
+        };
+        let still = ["friction", "friction_torque", "well_bending", "torsion", "axial_motion"];
+        assert_eq!(left_out(both), still);
+        // Below the string the hole may do as it likes.
+        let curved_below = |s: &mut Scenario| {
+            both(s);
+            let last = *s.well.survey.last().unwrap();
+            let below =
+                SurveyStation { measured_depth: last.measured_depth + 50.0, inclination_deg: 70.0, ..last };
+            s.well.survey.push(below);
+        };
+        assert_eq!(left_out(curved_below), still);
+        let no_torque = |s: &mut Scenario| {
+            without_friction(s);
+            s.operation.torque_on_bit = 0.0;
+        };
+        assert_eq!(left_out(no_torque), ["friction", "friction_torque", "torque_stiffening"]);
+    }
+
+    #[test]
+    fn on_and_off_are_obeyed_and_named() {
+        let mut scenario = paper();
+        scenario.effects.set(Effect::Contact, Switch::Off);
+        scenario.effects.set(Effect::Friction, Switch::On);
+        scenario.operation.rotation_speed_rpm = 0.0;
+        scenario.effects.set(Effect::Gyroscopic, Switch::On);
+        let decisions = decide_effects(&scenario);
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        assert_eq!(
+            (of(Effect::Contact).active, of(Effect::Contact).reason.as_str()),
+            (false, "switched off")
+        );
+        assert_eq!((of(Effect::Friction).active, of(Effect::Friction).reason.as_str()), (true, "asked for"));
+        assert!(of(Effect::Gyroscopic).active);
+        // Friction torque follows from what was decided of contact.
+        assert_eq!(of(Effect::FrictionTorque).reason, "there is no contact");
+    }
+
+    #[test]
+    fn small_effects_are_left_out_only_where_that_is_asked_for_and_with_an_estimate() {
+        let mut scenario = paper();
+        assert!(decide_effects(&scenario).iter().all(|decision| decision.active));
+        scenario.effects.auto = AutoRule::Aggressive;
+        let decisions = decide_effects(&scenario);
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        // Collars of 159 x 71 mm: rho I = 7900 * 3.01e-5 kg m, m = 261 kg/m with added mass, E I = 6.1e6 N m2, so that
+        // rho I W / (m E I)^(1/2) = 0.238 * 12.57 / 4.0e4 = 7.5e-5.
+        let change = frequency_change(&scenario, Effect::Gyroscopic);
+        assert!((change / 7.5e-5 - 1.0).abs() < 0.3, "{change:e}");
+        assert!(!of(Effect::Gyroscopic).active);
+        assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
+        assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
+        // Fast flow is felt.
+        scenario.mud.as_mut().unwrap().flow_rate = 0.5;
+        let decisions = decide_effects(&scenario);
+        let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
+        assert!(of(Effect::FlowStiffness).active && of(Effect::FluidCoriolis).active);
+    }
+
+    #[test]
+    fn a_point_has_one_key_whether_an_effect_is_asked_for_or_called_for() {
+        let mut asked = paper();
+        for &effect in Effect::ALL {
+            asked.effects.set(effect, Switch::On);
+        }
+        assert_eq!(canonical_json(&asked), canonical_json(&paper()));
+    }
+}

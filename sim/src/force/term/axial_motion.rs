@@ -1,0 +1,15 @@
+//! Axial motion: without it every axial displacement stays at its static value and is not solved for.
+
+use super::scene::{no, yes};
+use super::{Call, Scene, Term};
+use crate::math::dof::W;
+
+pub(crate) const TERM: Term = Term { moves: Some(W), ..Term::new(called_for) };
+
+fn called_for(scene: &Scene<'_>) -> Call {
+    if scene.is_straight() {
+        no("nothing makes a straight string move along itself")
+    } else {
+        yes("the curved hole couples axial motion with bending")
+    }
+}

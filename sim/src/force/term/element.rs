@@ -1,0 +1,97 @@
+//! Terms that effects add to an element.
+
+use drillsweep_scenario::{Mud, RayleighDamping};
+use nalgebra::Vector3;
+
+use super::{Account, DAMPING, place_of_damping};
+use crate::force::mud::{ElementFlow, FlowMomentum};
+use crate::string::beam::{BeamElement, Chord, ElementMatrix, ElementVector};
+use crate::string::well::NodeFrame;
+
+/// An element as effects see it before anything is known of the equilibrium.
+pub struct ElementAtRest<'a> {
+    /// The beam in its chord frame.
+    pub beam: &'a BeamElement,
+    /// The chord frame.
+    pub chord: &'a Chord,
+    /// Its elastic stiffness, in the chord frame.
+    pub stiffness: &'a ElementMatrix,
+    /// Frames of the upper and the lower node.
+    pub frames: [&'a NodeFrame; 2],
+    /// Curvature vector of the centre line at mid-element \[1/m\], global.
+    pub curvature: Vector3<f64>,
+    /// The mud with the flows past the element, where there is any.
+    pub mud: Option<(&'a Mud, &'a FlowMomentum)>,
+    /// True for the element whose lower node is the bit.
+    pub ends_at_bit: bool,
+}
+
+/// Terms that effects add to an element at rest, in the chord frame.
+#[derive(Debug, Clone)]
+pub struct RestTerms {
+    /// Weight over gravity, of steel and whatever hangs on it \[kg/m\].
+    pub mass_per_length: f64,
+    /// Distributed load besides the weight along e1, e2, e3 \[N/m\].
+    pub distributed: [f64; 3],
+    /// Nodal loads.
+    pub nodal: ElementVector,
+    /// Stiffness that the state does not change.
+    pub stiffness: Option<ElementMatrix>,
+    /// Stiffening by a tension of 1 N.
+    pub by_tension: Option<ElementMatrix>,
+    /// Stiffening by a torque of 1 N m.
+    pub by_torque: Option<ElementMatrix>,
+}
+
+impl RestTerms {
+    /// Terms of an element of so much mass and nothing else \[kg/m\].
+    pub(crate) fn of_mass(mass_per_length: f64) -> Self {
+        Self {
+            mass_per_length,
+            distributed: [0.0; 3],
+            nodal: ElementVector::zeros(),
+            stiffness: None,
+            by_tension: None,
+            by_torque: None,
+        }
+    }
+}
+
+/// An element as effects see it in motion about an equilibrium; its matrices are over nodal values.
+pub struct ElementInMotion<'a> {
+    /// The beam in its chord frame.
+    pub beam: &'a BeamElement,
+    /// The chord frame.
+    pub chord: &'a Chord,
+    /// Mass of the structure.
+    pub structural_mass: &'a ElementMatrix,
+    /// Stiffness of the structure under the tension of the equilibrium.
+    pub structural_stiffness: &'a ElementMatrix,
+    /// Mass of 1 kg/m that moves sideways.
+    pub lateral_mass: &'a ElementMatrix,
+    /// Speed of rotation \[rad/s\].
+    pub rotation_speed: f64,
+    /// Rayleigh damping of the structure.
+    pub damping: RayleighDamping,
+    /// Masses and momentum of the flows past the element, where there is mud.
+    pub momentum: Option<&'a FlowMomentum>,
+    /// The flow past it at the equilibrium, where there is mud.
+    pub flow: Option<&'a ElementFlow>,
+}
+
+/// Terms that effects add to the motion of an element, over nodal values.
+#[derive(Debug, Clone, Default)]
+pub struct MotionTerms {
+    /// Mass besides the structure's.
+    pub mass: Option<ElementMatrix>,
+    /// Matrices that multiply velocities, by the account of their work, in the order of [`DAMPING`].
+    pub damping: [Option<ElementMatrix>; DAMPING.len()],
+}
+
+impl MotionTerms {
+    /// Adds a matrix that multiplies velocities, with the account of its work; a skew one does none.
+    pub(crate) fn add_damping(&mut self, account: Option<&Account>, matrix: ElementMatrix) {
+        let sum = &mut self.damping[place_of_damping(account)];
+        *sum = Some(sum.map_or(matrix, |sum| sum + matrix));
+    }
+}

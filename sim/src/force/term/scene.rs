@@ -1,0 +1,113 @@
+//! Properties of a scene that call for effects.
+
+use std::f64::consts::PI;
+
+use drillsweep_scenario::{ActiveEffects, Mud, Scenario, Section, SurveyStation};
+
+use crate::force::mud::{FlowGeometry, FlowMomentum};
+use crate::string::beam::BeamSection;
+
+/// A scenario, and what was decided of the effects so far.
+pub struct Scene<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// The effects before this one in their order, decided; those after it count as active.
+    pub active: &'a ActiveEffects,
+}
+
+/// Whether a scene calls for an effect, and why.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Call {
+    /// Whether it does.
+    pub active: bool,
+    /// Why, in words.
+    pub reason: &'static str,
+}
+
+/// The scene calls for the effect.
+pub(crate) const fn yes(reason: &'static str) -> Call {
+    Call { active: true, reason }
+}
+
+/// It does not.
+pub(crate) const fn no(reason: &'static str) -> Call {
+    Call { active: false, reason }
+}
+
+impl Scene<'_> {
+    /// Whether the string turns.
+    pub(crate) fn turns(&self) -> bool {
+        self.scenario.operation.rotation_speed_rpm != 0.0
+    }
+
+    /// Whether the hole is straight along the whole string.
+    pub(crate) fn is_straight(&self) -> bool {
+        let sections = self.scenario.string.sections.iter();
+        let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
+        self.scenario.well.survey.windows(2).all(|stations| {
+            let [above, below] = stations else { return true };
+            above.measured_depth >= length || same_direction(above, below)
+        })
+    }
+}
+
+/// Call for an effect of mud, wherever it is.
+pub(crate) fn has_mud(scene: &Scene<'_>) -> Call {
+    if scene.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
+}
+
+/// Call for an effect of flowing mud.
+pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
+    match &scene.scenario.mud {
+        None => no("the hole is dry"),
+        Some(mud) if mud.flow_rate == 0.0 => no("the mud does not flow"),
+        Some(_) => yes("the mud flows"),
+    }
+}
+
+/// Call for friction at the wall.
+pub(crate) fn has_friction(scene: &Scene<'_>) -> Call {
+    let law = &scene.scenario.contact;
+    match (scene.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {
+        (false, _) => no("there is no contact"),
+        (true, true) => no("the wall is without friction"),
+        (true, false) => yes("the wall has friction"),
+    }
+}
+
+fn same_direction(a: &SurveyStation, b: &SurveyStation) -> bool {
+    let is_vertical = a.inclination_deg == 0.0 || a.inclination_deg == 180.0;
+    a.inclination_deg == b.inclination_deg && (is_vertical || a.azimuth_deg == b.azimuth_deg)
+}
+
+/// A lateral wave along one section that turns with the string: its wave number k has m w^2 = E I k^4, so that k^2 = w (m/(E I))^(1/2).
+pub(crate) struct LateralWave {
+    /// The section.
+    pub(crate) beam: BeamSection,
+    /// Density of its material \[kg/m3\].
+    pub(crate) density: f64,
+    /// The flows past it, where there is mud.
+    pub(crate) flow: Option<FlowMomentum>,
+    /// m, mud included \[kg/m\].
+    pub(crate) mass: f64,
+    /// w \[rad/s\]; without rotation there is no such wave.
+    pub(crate) frequency: f64,
+    /// k \[1/m\].
+    pub(crate) wave_number: f64,
+}
+
+impl LateralWave {
+    /// That along a section of a scenario's string.
+    pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
+        let material = scenario.string.body_material(section);
+        let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);
+        let flow_of =
+            |mud: &Mud| FlowMomentum::new(mud, &FlowGeometry::past(&beam, scenario.well.hole_diameter));
+        let flow = scenario.mud.as_ref().map(flow_of);
+        let mass = material.density * beam.area + flow.map_or(0.0, |flow| flow.lateral_mass());
+        let stiffness = material.youngs_modulus * beam.second_moment;
+        let frequency = scenario.operation.rotation_speed_rpm.abs() * PI / 30.0;
+        let wave_number = (frequency * (mass / stiffness).sqrt()).sqrt();
+        Self { beam, density: material.density, flow, mass, frequency, wave_number }
+    }
+}

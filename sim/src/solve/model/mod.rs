@@ -1,0 +1,263 @@
+//! The model: the string's elements and nodes in the well, and the matrices of the effects in play.
+//!
+//! A model is built from a scenario and does not change afterwards. What depends on the equilibrium (tension,
+//! torque, friction factors) comes in when the [equations of motion](crate::solve::motion) are assembled from it.
+
+mod element;
+
+pub use crate::force::effect::GRAVITY;
+pub use element::{ElementInput, StringElement};
+
+use std::sync::Arc;
+
+use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition, WallLaw};
+
+use crate::force::contact::{ContactNode, ContactSegment, Wall};
+use crate::force::drive::Drive;
+use crate::force::effect::active_effects;
+use crate::force::list::nodal_forces;
+use crate::force::nodal::{At, Dependence, ForceScene, NodalForce, NodeMotion};
+use crate::math::dof::{DOFS, THETA_Z, U, V, W};
+use crate::math::linalg::{Block, BlockTridiagonal};
+use crate::string::beam::{BeamSection, ElementMatrix, ElementVector};
+use crate::string::well::{NodeFrame, WellError, WellPath};
+use crate::string::{MeshElement, MeshError, MeshNode, StringMesh};
+
+/// Nodal values from the top: (u, v, w, theta_x, theta_y, theta_z) of every node, or those of them that a run solves for.
+pub type NodalVector<const D: usize = DOFS> = Vec<[f64; D]>;
+
+/// The string in its well.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The scenario that it was built from.
+    pub scenario: Scenario,
+    /// The effects that take part in it.
+    pub effects: ActiveEffects,
+    /// Nodes and elements of the string.
+    pub mesh: StringMesh,
+    /// The contact law, and the nodes and elements that can touch: all but the held node at the top.
+    pub wall: Wall,
+    /// Frame of every node.
+    pub frames: Vec<NodeFrame>,
+    /// Elements from the top.
+    pub elements: Vec<StringElement>,
+    /// Rotation of the top.
+    pub drive: Drive,
+    /// Speed of the turning frame, the drive's nominal one \[rad/s\].
+    pub rotation_speed: f64,
+    /// Forces at nodes but the wall's.
+    pub(crate) forces: Vec<Arc<dyn NodalForce>>,
+}
+
+/// Why a scenario has no model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The survey does not describe a path.
+    #[error("well: {0}")]
+    Well(#[from] WellError),
+    /// The string cannot be meshed.
+    #[error("string: {0}")]
+    Mesh(#[from] MeshError),
+}
+
+impl Model {
+    /// Builds the model of a scenario.
+    ///
+    /// # Errors
+    /// When the survey has no path or the string no mesh; a validated scenario has both.
+    pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
+        let path = WellPath::new(&scenario.well)?;
+        let effects = active_effects(scenario);
+        let mesh = StringMesh::new(scenario)?;
+        let frames = path.frames(&mesh.depths());
+        let last = mesh.elements.len().saturating_sub(1);
+        let elements: Vec<StringElement> = mesh
+            .elements
+            .iter()
+            .enumerate()
+            .map(|(i, element)| {
+                StringElement::new(&ElementInput {
+                    section: BeamSection::pipe(
+                        element.outer_diameter,
+                        element.inner_diameter,
+                        &element.material,
+                    ),
+                    frames: [&frames[i], &frames[i + 1]],
+                    curvature: path.curvature(element.top + 0.5 * element.length),
+                    hole_diameter: scenario.well.hole_diameter,
+                    mud: scenario.mud.as_ref(),
+                    effects: &effects,
+                    ends_at_bit: i == last,
+                })
+            })
+            .collect();
+        let drive = Drive::new(&scenario.operation);
+        let force_scene = ForceScene { scenario, effects: &effects, nodes: &mesh.nodes, drive: &drive };
+        Ok(Self {
+            scenario: scenario.clone(),
+            effects,
+            forces: nodal_forces(&force_scene),
+            wall: Self::wall(scenario, &effects, &mesh, &elements),
+            mesh,
+            frames,
+            elements,
+            rotation_speed: drive.nominal_speed(),
+            drive,
+        })
+    }
+
+    fn wall(
+        scenario: &Scenario,
+        effects: &ActiveEffects,
+        mesh: &StringMesh,
+        elements: &[StringElement],
+    ) -> Wall {
+        let contact = &scenario.contact;
+        let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| ContactNode::from(data));
+        let segment = |(data, element): (&MeshElement, &StringElement)| {
+            let length = element.beam.length();
+            ContactSegment {
+                length,
+                wall: ContactNode {
+                    clearance: 0.5 * (scenario.well.hole_diameter - data.outer_diameter),
+                    contact_radius: 0.5 * data.outer_diameter,
+                    stiffness_share: length * contact.stiffness_of_a_metre() / contact.stiffness,
+                    damping_share: length * contact.damping_of_a_metre() / contact.unit_damping(),
+                },
+            }
+        };
+        let by_length = contact.law == WallLaw::PerLength;
+        let segments = mesh.elements.iter().zip(elements).filter(|_| by_length).map(segment);
+        Wall::new(contact, effects, mesh.nodes.iter().enumerate().map(site), segments)
+            .with_friction_at_rest(scenario.statics.friction)
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.mesh.nodes.len()
+    }
+
+    /// Degrees of freedom of node `node` that the top's boundary condition holds at zero.
+    pub fn held_by_top(&self, node: usize) -> [bool; DOFS] {
+        match (node, self.scenario.operation.top) {
+            (0, TopCondition::Clamped) => [true; DOFS],
+            (0, TopCondition::Pinned) => std::array::from_fn(|dof| [U, V, W, THETA_Z].contains(&dof)),
+            _ => [false; DOFS],
+        }
+    }
+
+    /// Constant nodal loads, those of weight and torque on bit included, with the mud's drag \[N/m\] on every element (empty where there is none).
+    pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
+        let mut load = vec![[0.0; DOFS]; self.node_count()];
+        for (e, element) in self.elements.iter().enumerate() {
+            let mut f = element.load;
+            if let Some(&drag) = drag.get(e) {
+                f += element.unit_drag * drag;
+            }
+            add_element_vector(&mut load, e, &f);
+        }
+        let at_rest = self.at_rest(&[]);
+        self.add_forces(Dependence::None, &at_rest, &mut load);
+        load
+    }
+
+    /// True if any force at nodes but the wall's depends on the motion.
+    pub(crate) fn has_forces_of_motion(&self) -> bool {
+        self.forces.iter().any(|force| force.dependence() == Dependence::Motion)
+    }
+
+    /// Adds the forces at nodes of a dependence to nodal loads.
+    pub(crate) fn add_forces(
+        &self,
+        dependence: Dependence,
+        motion: &dyn Fn(usize) -> NodeMotion,
+        loads: &mut [[f64; DOFS]],
+    ) {
+        for force in self.forces.iter().filter(|force| force.dependence() == dependence) {
+            let (unknowns, memory) = (force.unknowns(), force.memory());
+            let mut forces = vec![[0.0; DOFS]; force.nodes().len()];
+            force.forces(&At { time: 0.0, motion, unknowns: &unknowns, memory: &memory }, &mut forces);
+            for (&node, force) in force.nodes().iter().zip(&forces) {
+                for (load, force) in loads[node].iter_mut().zip(force) {
+                    *load += force;
+                }
+            }
+        }
+    }
+
+    /// Adds stiffness and damping of the forces at nodes, about a motion, to matrices.
+    pub(crate) fn add_force_tangents(
+        &self,
+        motion: &dyn Fn(usize) -> NodeMotion,
+        stiffness: &mut BlockTridiagonal,
+        damping: Option<&mut BlockTridiagonal>,
+    ) {
+        let mut damping = damping;
+        for force in self.forces.iter().filter(|force| force.dependence() == Dependence::Motion) {
+            let (unknowns, memory) = (force.unknowns(), force.memory());
+            let at = At { time: 0.0, motion, unknowns: &unknowns, memory: &memory };
+            force.tangent(&at, &mut |[(row, i), (column, j)], [by_displacement, by_velocity]| {
+                let entry = |value: f64| Block::from_fn(|r, c| if (r, c) == (i, j) { value } else { 0.0 });
+                stiffness.add_block(row, column, &entry(by_displacement));
+                if let Some(damping) = damping.as_deref_mut() {
+                    damping.add_block(row, column, &entry(by_velocity));
+                }
+            });
+        }
+    }
+
+    /// Motion of nodes at rest in the turning frame; zero for nodes without displacements.
+    pub(crate) fn at_rest<'a>(&self, displacement: &'a [[f64; DOFS]]) -> impl Fn(usize) -> NodeMotion + 'a {
+        |node| NodeMotion {
+            displacement: displacement.get(node).copied().unwrap_or([0.0; DOFS]),
+            velocity: [0.0; DOFS],
+        }
+    }
+
+    /// Eccentricity of an element from the mean radius of its two nodes, relative to the concentric clearance of
+    /// its body: 0 concentric, 1 touching (docs/model/mud.md, Eccentricity).
+    pub fn eccentricity(&self, element: usize, displacement: &[[f64; DOFS]]) -> f64 {
+        let radius = |node: usize| displacement[node][U].hypot(displacement[node][V]);
+        let clearance = 0.5 * (self.scenario.well.hole_diameter - self.mesh.elements[element].outer_diameter);
+        (0.5 * (radius(element) + radius(element + 1)) / clearance).min(1.0)
+    }
+}
+
+/// The 12 nodal values of element `element`.
+pub fn element_values(displacement: &[[f64; DOFS]], element: usize) -> ElementVector {
+    ElementVector::from_fn(|i, _| displacement[element + i / DOFS][i % DOFS])
+}
+
+/// Adds an element vector to the two nodes of element `element`.
+pub fn add_element_vector(target: &mut [[f64; DOFS]], element: usize, f: &ElementVector) {
+    for i in 0..2 * DOFS {
+        target[element + i / DOFS][i % DOFS] += f[i];
+    }
+}
+
+/// Adds an element matrix to the blocks of element `element`.
+pub fn add_element_matrix(target: &mut BlockTridiagonal, element: usize, m: &ElementMatrix) {
+    for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let block = Block::from_fn(|i, j| m[(DOFS * row + i, DOFS * column + j)]);
+        target.add_block(element + row, element + column, &block);
+    }
+}
+
+/// Empties the rows and columns of held degrees of freedom.
+pub(crate) fn clear_held(matrix: &mut BlockTridiagonal, held: &[[bool; DOFS]]) {
+    let n = held.len();
+    for row in 0..n {
+        let neighbours = [row.checked_sub(1), Some(row), Some(row + 1).filter(|&next| next < n)];
+        let blocks = [&mut matrix.lower[row], &mut matrix.diagonal[row], &mut matrix.upper[row]];
+        for (block, neighbour) in blocks.into_iter().zip(neighbours) {
+            let Some(column_node) = neighbour else { continue };
+            for (j, column) in block.columns.iter_mut().enumerate() {
+                for (i, value) in column.iter_mut().enumerate() {
+                    if held[row][i] || held[column_node][j] {
+                        *value = 0.0;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,453 @@
+//! The quasi-static equilibrium of the string on its wall, and the mud around it.
+//!
+//! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
+//! with the hydraulics until both have converged (docs/model/equilibrium.md).
+
+mod continuation;
+mod homotopy;
+mod hydraulics;
+mod newton;
+mod overload;
+mod path;
+mod relaxation;
+
+use hydraulics::{Sections, drag, node_pressures};
+pub use newton::NewtonSettings;
+pub use overload::Overload;
+pub(crate) use overload::negative_eigenvalues;
+
+use drillsweep_scenario::{ContactLaw, StartFriction};
+
+use crate::force::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
+use crate::force::mud::{ElementFlow, MudError, Pressures};
+use crate::math::dof::{DOFS, U, V};
+use crate::math::linalg::SingularBlock;
+use crate::solve::model::{Model, NodalVector, element_values};
+
+/// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
+const HYDRAULIC_PASSES: usize = 30;
+
+/// Change of an eccentricity at which string and mud have converged: as it gains three digits a pass, what is left is rounding.
+const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
+
+/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge: shorter steps
+/// alone, then held by a spring thirty times as stiff too. They are orders of magnitude, without a derivation.
+const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
+
+/// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other where it does not reach the loads: none,
+/// then the one that the search begins with, which holds the string where its loads do not stretch it yet, and one thirty times as stiff.
+const PATH_SPRINGS: [f64; 3] = [0.0, 3e4, 1e6];
+
+/// Stiffness of softer walls on the way to the scenario's own, a decade apart: each lets the string ten times deeper in than the next one, from
+/// where Newton's method has to find the next.
+const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
+
+/// Iterations of a search with steps a tenth as long.
+const FALLBACK_ITERATIONS: usize = 1000;
+
+/// The string at rest: displacements, internal forces, contacts, flow.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// Displacement of every node in its own frame \[m, rad\].
+    pub displacement: NodalVector,
+    /// Effective tension of every element \[N\].
+    pub tension: Vec<f64>,
+    /// Torque of every element \[N m\].
+    pub torque: Vec<f64>,
+    /// Normal contact force of every node \[N\]; of contact along an element, the share of each node by its nearness.
+    pub normal_force: Vec<f64>,
+    /// Flow past every element; empty without mud.
+    pub flows: Vec<ElementFlow>,
+    /// Axial drag of the mud on every element, upward \[N/m\]; empty where there is none.
+    pub drag: Vec<f64>,
+    /// Pressures of the mud at every node; absent without mud.
+    pub pressures: Option<Pressures>,
+    /// Effort of the search.
+    pub effort: StaticsEffort,
+}
+
+/// Effort of finding an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticsEffort {
+    /// Newton iterations in all.
+    pub newton_iterations: usize,
+    /// Passes of hydraulics and equilibrium.
+    pub hydraulic_passes: usize,
+    /// Largest unbalanced force \[N\] or moment \[N m\] left.
+    pub residual: f64,
+}
+
+/// Why there is no equilibrium.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StaticsError {
+    /// Newton's method did not converge.
+    #[error(
+        "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
+        overload::verdict(overload.as_ref())
+    )]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// Largest unbalanced force \[N\].
+        residual: f64,
+        /// Node where it stands, from 1.
+        node: usize,
+        /// The instability that the string has wherever it lies; absent where none is shown.
+        overload: Option<Overload>,
+    },
+    /// The tangent broke down.
+    #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
+    Singular(#[from] SingularBlock),
+    /// The flow past the string has no solution.
+    #[error("the mud at node {node}: {error}")]
+    Mud {
+        /// Upper node of the first element where that shows, from 1.
+        node: usize,
+        /// Error in its computation.
+        error: MudError,
+    },
+    /// The iteration between equilibrium and hydraulics did not converge.
+    #[error(
+        "the equilibrium of string and mud did not converge: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
+    )]
+    HydraulicsNotConverged {
+        /// Passes made.
+        passes: usize,
+        /// Last change of an eccentricity.
+        change: f64,
+        /// Upper node of the element where it is largest, from 1.
+        node: usize,
+    },
+}
+
+impl StaticsError {
+    /// The node where the failure shows most, from 1.
+    pub fn node(&self) -> usize {
+        match self {
+            Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,
+            Self::HydraulicsNotConverged { node, .. } => *node,
+            Self::Singular(block) => block.row + 1,
+        }
+    }
+
+    /// Whether there may be an equilibrium nevertheless, as far as is known.
+    fn is_open(&self) -> bool {
+        match self {
+            Self::NotConverged { overload, .. } => overload.is_none(),
+            Self::Singular(_) | Self::HydraulicsNotConverged { .. } => true,
+            Self::Mud { .. } => false,
+        }
+    }
+}
+
+impl Equilibrium {
+    /// The equilibrium of a model, searched from the centre line.
+    ///
+    /// # Errors
+    /// When Newton's method or the iteration with the hydraulics does not converge.
+    pub fn find(model: &Model) -> Result<Self, StaticsError> {
+        Self::find_from(model, vec![[0.0; DOFS]; model.node_count()], &NewtonSettings::default())
+    }
+
+    /// The equilibrium searched from given displacements.
+    ///
+    /// # Errors
+    /// As [`Equilibrium::find`].
+    pub fn find_from(
+        model: &Model,
+        displacement: NodalVector,
+        settings: &NewtonSettings,
+    ) -> Result<Self, StaticsError> {
+        let sections = Sections::new(model)?;
+        let concentric = vec![0.0; model.elements.len()];
+        let mut settings = settings.clone();
+        let found = Self::in_passes(
+            model,
+            &model.wall,
+            &sections,
+            (displacement, concentric),
+            |load, displacement| {
+                let outcome = with_fallbacks(model, load, displacement, &settings)?;
+                // Later passes start next to the solution: plain Newton from there.
+                settings.initial_shift = 0.0;
+                Ok(outcome)
+            },
+        );
+        let failure = match found {
+            Err(failure) if failure.is_open() => failure,
+            ended => return ended,
+        };
+        let Some((displacement, outcome)) = homotopy::find(model, &sections) else { return Err(failure) };
+        let eccentricity = eccentricities(model, &displacement);
+        let flows = sections.flows(&eccentricity)?;
+        let drag = drag(model, &flows);
+        let effort = StaticsEffort {
+            newton_iterations: outcome.iterations,
+            hydraulic_passes: 1,
+            residual: outcome.residual,
+        };
+        Self::assemble(model, &model.wall, displacement, flows, drag, effort)
+    }
+
+    /// The equilibrium of the same model with another friction at rest, searched from this one; this one itself if nothing rubs.
+    ///
+    /// # Errors
+    /// When Newton's method from here, with and without its spring, or the iteration with the hydraulics does not converge.
+    pub fn with_friction_at_rest(
+        &self,
+        model: &Model,
+        friction: StartFriction,
+    ) -> Result<Self, StaticsError> {
+        let effects = &model.effects;
+        let turns = model.rotation_speed != 0.0 && model.scenario.contact.static_friction != 0.0;
+        if !(turns && effects.contact && (effects.friction || effects.friction_torque)) {
+            return Ok(self.clone());
+        }
+        let wall = model.wall.with_friction_at_rest(friction);
+        let sections = Sections::new(model)?;
+        let plain = NewtonSettings {
+            initial_shift: 0.0,
+            iteration_limit: newton::LAST_ITERATIONS,
+            ..NewtonSettings::default()
+        };
+        let start = (self.displacement.clone(), eccentricities(model, &self.displacement));
+        Self::in_passes(model, &wall, &sections, start, |load, displacement| {
+            let before = displacement.clone();
+            newton::solve(model, &wall, load, displacement, &plain).or_else(|_| {
+                *displacement = before;
+                newton::solve(model, &wall, load, displacement, &NewtonSettings::default())
+            })
+        })
+    }
+
+    /// The equilibrium on `wall` under the drag of the mud where the string lies, found by computing each from the other in turn: from
+    /// displacements and eccentricities to begin with, and by `solve`, which moves displacements to the equilibrium under a load.
+    fn in_passes(
+        model: &Model,
+        wall: &Wall,
+        sections: &Sections,
+        (mut displacement, mut eccentricity): (NodalVector, Vec<f64>),
+        mut solve: impl FnMut(&[[f64; DOFS]], &mut NodalVector) -> Result<newton::NewtonOutcome, StaticsError>,
+    ) -> Result<Self, StaticsError> {
+        let mut newton_iterations = 0;
+        for pass in 1..=HYDRAULIC_PASSES {
+            let flows = sections.flows(&eccentricity)?;
+            let drag = drag(model, &flows);
+            let outcome = solve(&model.constant_load(&drag), &mut displacement)?;
+            newton_iterations += outcome.iterations;
+            let (mut change, mut node) = (0.0, 1);
+            for (e, old) in eccentricity.iter_mut().enumerate() {
+                let new = model.eccentricity(e, &displacement);
+                if (new - *old).abs() > change {
+                    (change, node) = ((new - *old).abs(), e + 1);
+                }
+                *old = new;
+            }
+            if flows.is_empty() || change <= ECCENTRICITY_TOLERANCE {
+                let effort =
+                    StaticsEffort { newton_iterations, hydraulic_passes: pass, residual: outcome.residual };
+                return Self::assemble(model, wall, displacement, flows, drag, effort);
+            }
+            if pass == HYDRAULIC_PASSES {
+                return Err(StaticsError::HydraulicsNotConverged { passes: pass, change, node });
+            }
+        }
+        unreachable!("the last pass returns")
+    }
+
+    /// The string on the centre line without any load or flow: a stand-in where the equilibrium is not known yet.
+    pub(crate) fn unloaded(model: &Model) -> Self {
+        let (nodes, elements) = (model.node_count(), model.elements.len());
+        Self {
+            displacement: vec![[0.0; DOFS]; nodes],
+            tension: vec![0.0; elements],
+            torque: vec![0.0; elements],
+            normal_force: vec![0.0; nodes],
+            flows: Vec::new(),
+            drag: Vec::new(),
+            pressures: None,
+            effort: StaticsEffort { newton_iterations: 0, hydraulic_passes: 0, residual: 0.0 },
+        }
+    }
+
+    fn assemble(
+        model: &Model,
+        wall: &Wall,
+        displacement: NodalVector,
+        flows: Vec<ElementFlow>,
+        drag: Vec<f64>,
+        effort: StaticsEffort,
+    ) -> Result<Self, StaticsError> {
+        let rows = |row: fn(&crate::solve::model::StringElement) -> &crate::string::beam::ElementVector| {
+            model
+                .elements
+                .iter()
+                .enumerate()
+                .map(|(e, element)| row(element).dot(&element_values(&displacement, e)))
+                .collect::<Vec<f64>>()
+        };
+        let tension = rows(|element| &element.tension_row);
+        let torque = rows(|element| &element.torque_row);
+        let mut normal_force: Vec<f64> = (0..model.node_count())
+            .map(|node| {
+                contact_at(wall, node, &displacement[node], model.rotation_speed)
+                    .map_or(0.0, |contact| contact.normal)
+            })
+            .collect();
+        for element in 0..model.elements.len() {
+            let contact = contact_along(&model.wall, element, &displacement, model.rotation_speed);
+            let [upper, lower] = contact.map_or([0.0; 2], |contact| contact.ends);
+            normal_force[element] += upper;
+            normal_force[element + 1] += lower;
+        }
+        let pressures = model.scenario.mud.as_ref().map(|mud| node_pressures(model, mud, &flows)).transpose();
+        // Pressures add up along the whole string: they are largest at its end.
+        let pressures = pressures.map_err(|error| StaticsError::Mud { node: model.node_count(), error })?;
+        Ok(Self { displacement, tension, torque, normal_force, flows, drag, pressures, effort })
+    }
+}
+
+fn eccentricities(model: &Model, displacement: &[[f64; DOFS]]) -> Vec<f64> {
+    (0..model.elements.len()).map(|element| model.eccentricity(element, displacement)).collect()
+}
+
+/// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with
+/// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, along the path from a wall
+/// without friction, and by plain steps of any length.
+fn with_fallbacks(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+    settings: &NewtonSettings,
+) -> Result<newton::NewtonOutcome, StaticsError> {
+    let start = displacement.clone();
+    let failure = match newton::solve(model, &model.wall, load, displacement, settings) {
+        Err(failure) => failure,
+        converged => return converged,
+    };
+    if let Some(outcome) = by_way_of_the_nodes(model, load, &start) {
+        let (found, outcome) = outcome;
+        *displacement = found;
+        return Ok(outcome);
+    }
+    displacement.clone_from(&start);
+    if let Ok(outcome) = against_a_hardening_wall(model, load, displacement) {
+        return Ok(outcome);
+    }
+    for (stiffer, shorter) in FALLBACK_STEPS {
+        displacement.clone_from(&start);
+        let defaults = NewtonSettings::default();
+        let slow = NewtonSettings {
+            initial_shift: stiffer * defaults.initial_shift,
+            largest_step: shorter * defaults.largest_step,
+            iteration_limit: FALLBACK_ITERATIONS,
+            ..defaults
+        };
+        if let Ok(outcome) = newton::solve(model, &model.wall, load, displacement, &slow) {
+            return Ok(outcome);
+        }
+    }
+    displacement.clone_from(&start);
+    let found = PATH_SPRINGS
+        .iter()
+        .find_map(|&spring| continuation::follow(model, load, displacement, spring))
+        .or_else(|| relaxation::settle(model, load, displacement))
+        .or_else(|| {
+            displacement.clone_from(&start);
+            with_growing_friction(model, load, displacement)
+        })
+        .or_else(|| {
+            displacement.clone_from(&start);
+            newton::finish(model, load, displacement)
+        });
+    if let Some(outcome) = found {
+        return Ok(outcome);
+    }
+    Err(match failure {
+        StaticsError::NotConverged { iterations, residual, node, .. } => {
+            let overload = overload::find(model);
+            StaticsError::NotConverged { iterations, residual, node, overload }
+        }
+        other => other,
+    })
+}
+
+/// The path of equilibria as friction grows, from the one on the wall without; `None` also where that is not found, or the wall has no friction.
+fn with_growing_friction(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> Option<newton::NewtonOutcome> {
+    let has_friction = model.effects.contact && model.effects.friction;
+    if !has_friction || model.scenario.contact.static_friction == 0.0 {
+        return None;
+    }
+    let frictionless = continuation::frictionless(model);
+    let start = displacement.clone();
+    let settings = NewtonSettings::default();
+    let (_, shorter) = FALLBACK_STEPS[0];
+    let slow = NewtonSettings {
+        largest_step: shorter * settings.largest_step,
+        iteration_limit: FALLBACK_ITERATIONS,
+        ..settings.clone()
+    };
+    let is_found = [settings, slow].iter().any(|settings| {
+        displacement.clone_from(&start);
+        newton::solve(model, &frictionless, load, displacement, settings).is_ok()
+    });
+    if is_found { continuation::with_growing_friction(model, load, displacement) } else { None }
+}
+
+/// The equilibrium on a wall along the elements from the one on the wall put at the nodes; `None` if the wall is at the nodes anyway, or either is not found.
+fn by_way_of_the_nodes(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    start: &NodalVector,
+) -> Option<(NodalVector, newton::NewtonOutcome)> {
+    if model.wall.segments().is_empty() {
+        return None;
+    }
+    let at_nodes = Model { wall: model.wall.at_nodes(), ..model.clone() };
+    let mut displacement = start.clone();
+    with_fallbacks(&at_nodes, load, &mut displacement, &NewtonSettings::default()).ok()?;
+    let outcome = continuation::along_the_elements(model, load, &mut displacement)?;
+    Some((displacement, outcome))
+}
+
+/// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.
+fn against_a_hardening_wall(
+    model: &Model,
+    load: &[[f64; DOFS]],
+    displacement: &mut NodalVector,
+) -> Result<newton::NewtonOutcome, StaticsError> {
+    let own = &model.scenario.contact;
+    for share in SOFT_WALLS {
+        let law = ContactLaw { stiffness: share * own.stiffness, ..*own };
+        let soft = model.wall.with_law(&law, &model.effects);
+        newton::solve(model, &soft, load, displacement, &NewtonSettings::default())?;
+    }
+    newton::solve(model, &model.wall, load, displacement, &NewtonSettings::default())
+}
+
+/// The quasi-static contact force of a node, where it touches.
+fn contact_at(
+    wall: &Wall,
+    node: usize,
+    displacement: &[f64; DOFS],
+    rotation_speed: f64,
+) -> Option<StaticContactForce> {
+    let site = wall.sites()[node].as_ref()?;
+    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
+    (contact.penetration > 0.0).then_some(contact)
+}
+
+/// The quasi-static contact along an element, where it touches.
+fn contact_along(
+    wall: &Wall,
+    element: usize,
+    displacement: &[[f64; DOFS]],
+    rotation_speed: f64,
+) -> Option<StaticSegmentForce> {
+    let segment = wall.segments().get(element)?;
+    static_segment(wall.law(), segment, &element_values(displacement, element), rotation_speed)
+}

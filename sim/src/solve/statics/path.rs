@@ -1,0 +1,172 @@
+//! A path of equilibria, followed by its arc length.
+//!
+//! `R(x, s) = 0`, the balance under a share s of something that grows, is a path through x and s. It is followed by its arc length (Riks 1979;
+//! Keller 1977), so that it may turn back in s: where it does, at a limit point, the equilibria that began there end.
+
+use super::newton::{self, NewtonOutcome, tributary_lengths};
+use crate::math::dof::{DOFS, U, V};
+use crate::math::linalg::{BlockTridiagonal, Factor};
+use crate::solve::model::{Model, NodalVector};
+
+/// First step along the path, in shares or radii of the hole, whichever are more.
+const FIRST_STEP: f64 = 0.05;
+
+/// The shortest step: of a path that needs shorter ones the search has lost hold.
+const SHORTEST_STEP: f64 = 1e-9;
+
+/// Linearisations after which a path is left.
+const MOST_LINEARISATIONS: usize = 4000;
+
+/// Iterations within which a step has to come back to the path.
+const MOST_CORRECTIONS: usize = 10;
+
+/// Last correction at which it has, in the largest displacement (or 1 m, 1 rad), and of the share.
+const ON_THE_PATH: f64 = 1e-8;
+
+/// Quantity that grows along a path from nothing, at s = 0, to the whole of it, at s = 1.
+pub(super) trait Growth {
+    /// Unbalanced forces at a point, their tangent, and their derivative by the share; `None` where there are none.
+    fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)>;
+
+    /// Moves `displacement` from next to the end of the path onto it.
+    fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome>;
+}
+
+/// Follows the path from `displacement`, at s = 0, and moves it to the end of the path, at s = 1; `None` where the path turns back to where it
+/// began, or the search loses hold of it.
+pub(super) fn follow(
+    model: &Model,
+    growth: &impl Growth,
+    displacement: &mut NodalVector,
+) -> Option<NewtonOutcome> {
+    let start = displacement.clone();
+    let path = Path { model, growth, tributary: tributary_lengths(model), linearisations: 0 };
+    path.follow(start, displacement)
+}
+
+struct Path<'a, G> {
+    model: &'a Model,
+    growth: &'a G,
+    tributary: Vec<f64>,
+    linearisations: usize,
+}
+
+/// A point of the path, or a direction along it.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub(super) displacement: NodalVector,
+    pub(super) share: f64,
+}
+
+impl Point {
+    fn plus(&self, factor: f64, other: &Self) -> Self {
+        let mut sum = self.clone();
+        add(&mut sum.displacement, factor, &other.displacement);
+        sum.share += factor * other.share;
+        sum
+    }
+}
+
+impl<G: Growth> Path<'_, G> {
+    fn follow(mut self, start: NodalVector, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
+        let mut here = Point { displacement: start, share: 0.0 };
+        let mut last_direction: Option<Point> = None;
+        let mut step = FIRST_STEP;
+        loop {
+            let direction = self.direction(&here, last_direction.as_ref())?;
+            let (next, corrections) = loop {
+                if let Some((next, corrections)) = self.step(&here, &direction, step) {
+                    if next.share < 1.0 {
+                        break (next, corrections);
+                    }
+                    let crossing = (1.0 - here.share) / (next.share - here.share);
+                    let mut at_load = here.displacement.clone();
+                    at_load.iter_mut().flatten().for_each(|value| *value *= 1.0 - crossing);
+                    add(&mut at_load, crossing, &next.displacement);
+                    self.linearisations += newton::LAST_ITERATIONS;
+                    if let Some(outcome) = self.growth.arrive(&mut at_load) {
+                        *displacement = at_load;
+                        return Some(outcome);
+                    }
+                }
+                step *= 0.5;
+                if step < SHORTEST_STEP || self.linearisations > MOST_LINEARISATIONS {
+                    return None;
+                }
+            };
+            here = next;
+            last_direction = Some(direction);
+            if here.share < 0.0 {
+                return None;
+            }
+            step *= match corrections {
+                ..=3 => 2.0,
+                4..=5 => 1.4,
+                _ => 1.0,
+            };
+        }
+    }
+
+    /// The direction of the path at a point, of length 1, onwards from the last one.
+    fn direction(&mut self, here: &Point, last: Option<&Point>) -> Option<Point> {
+        let (_, factor, slope) = self.linearised(here)?;
+        let mut displacement = slope;
+        factor.solve_in_place(&mut displacement);
+        let size = (self.product(&displacement, &displacement) + 1.0).sqrt();
+        let onwards = last.map_or(1.0, |last| self.product(&displacement, &last.displacement) + last.share);
+        let share = (1.0 / size).copysign(onwards);
+        displacement.iter_mut().flatten().for_each(|value| *value *= share);
+        share.is_finite().then_some(Point { displacement, share })
+    }
+
+    /// A point of the path about `step` from `here`, in the plane normal to the path there, and the corrections it took.
+    fn step(&mut self, here: &Point, direction: &Point, step: f64) -> Option<(Point, usize)> {
+        let mut next = here.plus(step, direction);
+        let mut last = f64::INFINITY;
+        for correction in 1..=MOST_CORRECTIONS {
+            let (residual, factor, slope) = self.linearised(&next)?;
+            let (mut at_share, mut by_share) = (residual, slope);
+            factor.solve_in_place(&mut at_share);
+            factor.solve_in_place(&mut by_share);
+            let share = -self.product(&direction.displacement, &at_share)
+                / (self.product(&direction.displacement, &by_share) + direction.share);
+            add(&mut at_share, share, &by_share);
+            let size = at_share.iter().flatten().fold(share.abs(), |most, value| most.max(value.abs()));
+            // What leads further away than the step itself leads to another path.
+            let distance = (self.product(&at_share, &at_share) + share * share).sqrt();
+            if !size.is_finite() || size > 2.0 * last || distance > step {
+                return None;
+            }
+            next = next.plus(1.0, &Point { displacement: at_share, share });
+            let largest =
+                next.displacement.iter().flatten().fold(1.0_f64, |most, value| most.max(value.abs()));
+            if size <= ON_THE_PATH * largest {
+                return Some((next, correction));
+            }
+            last = size;
+        }
+        None
+    }
+
+    /// Unbalanced forces at a point, the factor of their tangent, and their derivative by the share.
+    fn linearised(&mut self, at: &Point) -> Option<(NodalVector, Factor, NodalVector)> {
+        self.linearisations += 1;
+        let (residual, tangent, slope) = self.growth.linearise(at)?;
+        Some((residual, Factor::new(&tangent).ok()?, slope))
+    }
+
+    /// The product of two lateral displacements, mean along the string, in squares of the hole's radius.
+    fn product(&self, a: &[[f64; DOFS]], b: &[[f64; DOFS]]) -> f64 {
+        let radius = 0.5 * self.model.scenario.well.hole_diameter;
+        let nodes = a.iter().zip(b).zip(&self.tributary);
+        let sum: f64 = nodes.map(|((a, b), length)| length * (a[U] * b[U] + a[V] * b[V])).sum();
+        sum / (self.tributary.iter().sum::<f64>() * radius * radius)
+    }
+}
+
+/// Adds a multiple of a vector to another.
+pub(super) fn add(target: &mut [[f64; DOFS]], factor: f64, other: &[[f64; DOFS]]) {
+    for (target, other) in target.iter_mut().flatten().zip(other.iter().flatten()) {
+        *target += factor * other;
+    }
+}

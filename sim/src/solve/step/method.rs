@@ -1,0 +1,69 @@
+//! Interface of the methods of integration in time.
+
+use super::adaptive::Tolerances;
+use super::forces::{ActingForces, Forces};
+use super::grid::Grid;
+use super::implicit::SweepMonitor;
+use super::state::{Books, State};
+use crate::math::linalg::{Four, NodalField};
+
+/// A method of integration in time.
+pub(crate) trait Method<const D: usize> {
+    /// Advances `state`, whose forces are `acting`, by one step of the level ahead or of a lower one.
+    ///
+    /// # Errors
+    /// When no step is short enough.
+    fn advance(
+        &mut self,
+        forces: &Forces<D>,
+        ahead: StepAhead<'_>,
+        state: &mut State<D>,
+        acting: &ActingForces,
+        books: Books<'_, D>,
+    ) -> Result<StepMade, StepCollapsed>;
+
+    /// Largest normal forces of nodes within the last step \[N\], four side by side; empty if they are those of its ends.
+    fn peaks(&self) -> &[Four] {
+        &[]
+    }
+
+    /// Displacements, velocities and accelerations at the start of the last step, between which and its end motion can be interpolated; absent if steps
+    /// end at every sample.
+    fn start_of_step(&self) -> Option<[&NodalField<D>; 3]> {
+        None
+    }
+}
+
+/// Step that is to be made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepAhead<'a> {
+    /// Time at its start \[s\].
+    pub(crate) time: f64,
+    /// Level of the grid, the highest that is allowed.
+    pub(crate) level: u32,
+    pub(crate) grid: &'a Grid,
+    /// Present if the step adapts itself.
+    pub(crate) tolerances: Option<&'a Tolerances>,
+}
+
+/// Step that was made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepMade {
+    /// Level of the grid.
+    pub(crate) level: u32,
+    /// Level of the next step that the error suggests; absent with fixed steps.
+    pub(crate) next_level: Option<u32>,
+    /// Steps within it.
+    pub(crate) steps: u64,
+    /// The shortest and the longest of them \[s\].
+    pub(crate) step_range: [f64; 2],
+    /// Steps that left more than the tolerance and were made again.
+    pub(crate) rejected: u64,
+    /// Steps of the shortest length that left more than the tolerance.
+    pub(crate) unresolved: u64,
+    pub(crate) monitor: SweepMonitor,
+}
+
+/// A step of an adaptive method became too short.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StepCollapsed;

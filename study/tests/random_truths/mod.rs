@@ -1,0 +1,162 @@
+//! Random scenarios with stick-slip, and whether a run of `standard` is right or says that it may not be: judged by RK4 at 0.95 of its stability
+//! limit, a method of another kind.
+
+#![allow(dead_code, unreachable_pub)]
+
+use drillsweep_scenario::{
+    Accuracy, AccuracyPreset, Effects, ElementLengths, Integrator, Mesh, OrbitWindow, Recording, Scenario,
+    TimeStepping, TimeWindow,
+};
+use drillsweep_sim::control::Control;
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::modes::UndampedTorsion;
+use drillsweep_sim::solve::run::{Outcome, Records, Transient};
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::solve::step::rk4_stability_limit;
+use drillsweep_sim::validation::validate;
+use drillsweep_study::errors::TimeError;
+use drillsweep_study::sensitivity::Sensitivity;
+use drillsweep_study::summary::TransientSummary;
+use random_scenario::random_scenario;
+
+#[path = "../../../sim/tests/random_scenario/mod.rs"]
+mod random_scenario;
+
+/// Part of its stability limit that RK4's steps have at most.
+const BELOW_LIMIT: f64 = 0.95;
+
+/// Stiffness-proportional damping \[s\] that ends torsion before the mesh does, as in the damped base case.
+const CLOSING_DAMPING: f64 = 3e-5;
+
+/// Verdict on a run of `standard` in a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Judgement {
+    /// The scenario is none to judge: no equilibrium, no stick-slip, or RK4 would take too long.
+    Passed(&'static str),
+    /// The run ends as failed, which says that it has no result.
+    Failed,
+    /// The run has a result, with its errors in size and deviation relative to RK4's, the worst nodes.
+    Known {
+        /// Of orbit size.
+        size: f64,
+        /// Of the radius' standard deviation.
+        deviation: f64,
+        /// The error that the run states; absent where it says that it is not known.
+        stated: Option<f64>,
+        /// By how much the scenario amplifies a disturbance; absent where the twin diverged.
+        amplification: Option<f64>,
+    },
+}
+
+impl Judgement {
+    /// Whether the run is wrong by more than it promises and states, and does not say so.
+    pub fn is_silently_wrong(&self) -> bool {
+        let Some(promise) = Accuracy::Preset(AccuracyPreset::Standard).promise() else { return false };
+        match self {
+            Judgement::Known { size, deviation, stated: Some(stated), .. } => {
+                !(*size <= promise.orbit_size.max(*stated)
+                    && *deviation <= promise.radius_deviation.max(*stated))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Scene `index` of a seed, long enough for stick-slip: in the middle of the range of rotation speeds, closed by damping, without tool joints
+/// and on elements of `element` \[m\], whose axial frequency is what RK4's steps depend on.
+pub fn long_scenario(seed: u64, index: u64, duration: f64, element: f64) -> Scenario {
+    let mut scenario = random_scenario(seed, index);
+    scenario.effects = Effects::default();
+    scenario.duration = duration;
+    scenario.accuracy = Accuracy::Preset(AccuracyPreset::Standard);
+    scenario.damping.stiffness_proportional = CLOSING_DAMPING;
+    scenario.damping.mass_proportional = scenario.damping.mass_proportional.max(0.03);
+    let speed = scenario.operation.rotation_speed_rpm;
+    scenario.operation.rotation_speed_rpm = (30.0 + speed.abs() % 130.0).copysign(speed);
+    for section in &mut scenario.string.sections {
+        section.tool_joint = None;
+        section.length = section.length.max(element);
+    }
+    scenario.string.gauges.clear();
+    let length: f64 = scenario.string.sections.iter().map(|s| f64::from(s.count) * s.length).sum();
+    let drawn = scenario.well.survey.last().map_or(length, |last| last.measured_depth);
+    for station in &mut scenario.well.survey {
+        station.measured_depth *= length / drawn;
+    }
+    for mass in &mut scenario.string.unbalance {
+        mass.measured_depth = (mass.measured_depth / drawn * length / element).round().max(1.0) * element;
+        mass.measured_depth = mass.measured_depth.min(length);
+    }
+    scenario.mesh = Mesh::Lengths(ElementLengths {
+        drillpipe: element,
+        tool_joint: element,
+        collar: element,
+        stabilizer: element,
+        bit: element,
+    });
+    let (from, to) = (duration * 2.0 / 3.0, duration);
+    scenario.recording = Recording {
+        rate_hz: 250.0,
+        orbit_window: Some(OrbitWindow::Fixed(TimeWindow { from, to })),
+        spectrum_windows: Some(Vec::new()),
+        ..scenario.recording
+    };
+    scenario
+}
+
+/// Judges a run of `scenario`; RK4 may take `most_steps`.
+pub fn judge(scenario: &Scenario, most_steps: f64) -> Judgement {
+    if validate(scenario).is_err() {
+        return Judgement::Passed("not valid");
+    }
+    let Ok(model) = Model::new(scenario) else { return Judgement::Passed("no model") };
+    let Ok(equilibrium) = Equilibrium::find(&model) else { return Judgement::Passed("no equilibrium") };
+    if scenario.recording.nodes.is_empty() || !model.effects.contact {
+        return Judgement::Passed("nothing to compare");
+    }
+    let Ok(limit) = rk4_stability_limit(&model, &equilibrium) else {
+        return Judgement::Passed("singular mass");
+    };
+    let interval = 1.0 / scenario.recording.rate_hz;
+    let step = interval / (interval / (BELOW_LIMIT * limit)).ceil();
+    if scenario.duration / step > most_steps {
+        return Judgement::Passed("rk4 takes too long");
+    }
+    let Some((own, records)) = run(&model, &equilibrium) else { return Judgement::Failed };
+    if !records.contacts.iter().any(|node| node.capture_count > 0) {
+        return Judgement::Passed("nothing sticks");
+    }
+    let control = Control::new();
+    let Ok(Some(twin)) = Sensitivity::of(&model, &equilibrium, &records, &control) else {
+        return Judgement::Passed("no twin");
+    };
+    let accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, step));
+    let fine = Scenario { accuracy, ..scenario.clone() };
+    let Ok(fine_model) = Model::new(&fine) else { return Judgement::Passed("no model") };
+    let Some((truth, _)) = run(&fine_model, &equilibrium) else { return Judgement::Passed("rk4 fails") };
+    let torsion = UndampedTorsion::about(&model, &equilibrium);
+    let stated = TimeError::new(&own, &[], Some(&twin), torsion.as_ref()).unconditional();
+    // An orbit that moves no further than this is rest, in relative terms of anything.
+    let least = 1e-5 * scenario.well.hole_diameter;
+    let pairs = || own.orbits.iter().zip(&truth.orbits).filter(|(_, truth)| truth.orbit_radius_rms > least);
+    let size = pairs().map(|(own, truth)| (own.orbit_radius_rms / truth.orbit_radius_rms - 1.0).abs());
+    let deviation = pairs()
+        .filter(|(_, truth)| truth.radius_deviation > least)
+        .map(|(own, truth)| (own.radius_deviation / truth.radius_deviation - 1.0).abs());
+    Judgement::Known {
+        size: size.fold(0.0, f64::max),
+        deviation: deviation.fold(0.0, f64::max),
+        stated,
+        amplification: twin.amplification,
+    }
+}
+
+fn run(model: &Model, equilibrium: &Equilibrium) -> Option<(TransientSummary, Box<Records>)> {
+    match Transient::new(model, equilibrium).ok()?.run(&Control::new()).ok()? {
+        Outcome::Finished(records) => {
+            let Ok(summary) = TransientSummary::new(model, &records);
+            Some((summary, records))
+        }
+        _ => None,
+    }
+}

@@ -281,7 +281,7 @@ impl PlannedStudy {
     fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Option<Self> {
         let rows = cost::plan(scenario).ok()?;
         let members = |row: &cost::PlannedRow| u64::from(row.members.end - row.members.start);
-        let expected = speed.map(|speed| cost::expected_cpu_time(&rows, speed));
+        let expected = speed.map(|speed| expected_cpu_time(&rows, speed));
         let is_known = |row: &&cost::PlannedRow| {
             let stepping = row.scenario.accuracy.time_stepping();
             stepping.integrator != Integrator::Rk4 || stepping.tolerance.is_none()
@@ -459,6 +459,19 @@ impl MachineSpeed {
         let per_node = self.step_per_node[method as usize][degrees_of_freedom - 4];
         per_node * nodes * (1.0 + way * (self.large_mesh_factor - 1.0))
     }
+}
+
+/// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
+/// their steps adapt themselves.
+pub fn expected_cpu_time(rows: &[cost::PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
+    let cost = |row: &cost::PlannedRow| {
+        let members = f64::from(row.members.end - row.members.start);
+        Some(members * Plan::of_line(&row.scenario, Some(speed)).ok()?.cpu_time()?)
+    };
+    rows.iter().map(cost).fold((0.0, 0), |(time, unknown), cost| match cost {
+        Some(cost) => (time + cost, unknown),
+        None => (time, unknown + 1),
+    })
 }
 
 #[cfg(test)]

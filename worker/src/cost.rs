@@ -6,8 +6,9 @@ use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::run::{Outcome, Transient};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::validation::validate;
-use drillsweep_study::cost::{CostReport, Measure, PlannedRow, expected_cpu_time, plan, report};
+use drillsweep_study::cost::{CostReport, Measure, PlannedRow, plan, report};
 use drillsweep_study::plan::MachineSpeed;
+use drillsweep_study::plan::expected_cpu_time;
 use rayon::prelude::*;
 
 use crate::error::ComputeError;

@@ -81,7 +81,12 @@ impl Model {
                 add_element_matrix(&mut mass, e, of_mud);
             }
             add_element_matrix(&mut stiffness, e, &element.stiffness(tension, torque));
-            for (of_account, term) in damping_of.iter_mut().zip(&terms.damping) {
+            let mut by_account: [Option<ElementMatrix>; DAMPING.len()] = [None; DAMPING.len()];
+            for (account, matrix) in terms.damping {
+                let sum = &mut by_account[place_of_damping(account)];
+                *sum = Some(sum.map_or(matrix, |sum| sum + matrix));
+            }
+            for (of_account, term) in damping_of.iter_mut().zip(&by_account) {
                 if let Some(term) = term {
                     add_element_matrix(of_account, e, term);
                     add_element_matrix(&mut damping, e, term);
@@ -129,6 +134,15 @@ impl<const D: usize> DynamicSystem<D> {
     /// The part of `damping` whose work belongs to an account of the energy ledger.
     pub fn damping_of(&self, account: &Account) -> &BlockTridiagonal<D> {
         &self.damping_of[place_of_damping(Some(account))]
+    }
+
+    /// Held degrees of freedom: node, from 0, and place among the node's.
+    pub(crate) fn held_places(&self) -> Vec<(usize, usize)> {
+        let held = |(node, held): (usize, &[bool; D])| {
+            let held = *held;
+            (0..D).filter(move |&dof| held[dof]).map(move |dof| (node, dof))
+        };
+        self.held.iter().enumerate().flat_map(held).collect()
     }
 }
 

@@ -5,7 +5,26 @@ use drillsweep_scenario::{
 };
 
 use super::auto;
-use super::mesh::{ElementKind, MAX_ELEMENTS, MeshError, SNAP_FRACTION};
+use super::error::{MAX_ELEMENTS, MeshError};
+
+/// A gauge, mass or recorded depth nearer to a boundary than this part of the target element length is put on the boundary:
+/// an element that short would cost accuracy and stiffness for nothing.
+pub const SNAP_FRACTION: f64 = 0.05;
+
+/// Part of the string that an element belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ElementKind {
+    /// Body of a drillpipe.
+    DrillpipeBody,
+    /// Tool joint.
+    ToolJoint,
+    /// Drill collar.
+    Collar,
+    /// Stabilizer.
+    Stabilizer,
+    /// Bit.
+    Bit,
+}
 
 /// A stretch of one kind, one cross-section and one material, with nodes forced at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,68 +2,11 @@
 
 use drillsweep_scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
 
-use super::boundaries;
-
-/// A string of more elements than this is refused.
-pub const MAX_ELEMENTS: usize = 20_000;
-
-/// A gauge, mass or recorded depth nearer to a boundary than this part of the target element length is put on the boundary:
-/// an element that short would cost accuracy and stiffness for nothing.
-pub const SNAP_FRACTION: f64 = 0.05;
+use super::boundaries::{self, ElementKind};
+use super::error::{MAX_ELEMENTS, MeshError};
 
 /// Depths may overshoot the ends of the string by this much \[m\]: its length is a sum and carries rounding.
 const DEPTH_ROUNDING: f64 = 1e-9;
-
-/// A string that cannot be cut into elements. Sections, gauges and masses are counted from 0.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MeshError {
-    /// There is no section.
-    #[error("the string has no sections")]
-    NoSections,
-    /// A section without pieces or with pieces without length.
-    #[error("section {section} has no length")]
-    NoLength {
-        /// The section.
-        section: usize,
-    },
-    /// Two tool joints leave nothing of the piece's body, or have no length.
-    #[error("section {section} has no room for a body between its tool joints")]
-    NoRoomForToolJoints {
-        /// The section.
-        section: usize,
-    },
-    /// A target element length that is not a positive number.
-    #[error("the target element length {0} m is not a positive number")]
-    Target(f64),
-    /// More than [`MAX_ELEMENTS`] elements.
-    #[error("the mesh has more than {MAX_ELEMENTS} elements")]
-    TooManyElements,
-    /// A gauge or mass above the top or below the bit.
-    #[error("{what} {index} at {measured_depth} m is not on the string")]
-    OffString {
-        /// "gauge" or "unbalance mass".
-        what: &'static str,
-        /// Its place in the list.
-        index: usize,
-        /// Its measured depth \[m\].
-        measured_depth: f64,
-    },
-}
-
-/// Part of the string that an element belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ElementKind {
-    /// Body of a drillpipe.
-    DrillpipeBody,
-    /// Tool joint.
-    ToolJoint,
-    /// Drill collar.
-    Collar,
-    /// Stabilizer.
-    Stabilizer,
-    /// Bit.
-    Bit,
-}
 
 /// One element, between nodes `i` and `i + 1` of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,9 +3,10 @@
 mod auto;
 pub mod beam;
 mod boundaries;
+mod error;
 mod mesh;
 pub mod well;
 
-pub use mesh::{
-    ElementKind, MAX_ELEMENTS, MeshElement, MeshError, MeshNode, NodeUnbalance, SNAP_FRACTION, StringMesh,
-};
+pub use boundaries::{ElementKind, SNAP_FRACTION};
+pub use error::{MAX_ELEMENTS, MeshError};
+pub use mesh::{MeshElement, MeshNode, NodeUnbalance, StringMesh};

@@ -1,5 +1,6 @@
 //! Admission of scenarios to simulation: every rule that a scenario must keep, checked all at once.
 
+mod accuracy;
 mod hole;
 mod loads;
 mod report;
@@ -7,6 +8,7 @@ mod snapshots;
 mod string;
 mod study;
 mod time;
+mod window;
 
 use drillsweep_scenario::{Problems, Scenario, Warning};
 use report::Report;

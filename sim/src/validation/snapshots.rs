@@ -3,7 +3,7 @@
 use drillsweep_scenario::{Outputs, Scenario, Snapshots};
 
 use super::report::Report;
-use super::time::{check_window, is_whole};
+use super::window::{check_window, is_whole};
 use crate::force::effect::active_effects;
 use crate::solve::run::SnapshotTimes;
 use crate::string::StringMesh;

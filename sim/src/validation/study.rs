@@ -2,9 +2,13 @@
 
 use drillsweep_scenario::{Accuracy, CostStudy, FEWEST_SAMPLES, Scenario, TimeStepping};
 
+use super::accuracy::check_accuracy;
 use super::report::Report;
-use super::time::{LARGEST_ENSEMBLE, check_accuracy, is_whole};
+use super::window::is_whole;
 use crate::force::effect::active_effects;
+
+/// Runs of one point at most.
+pub(super) const LARGEST_ENSEMBLE: u32 = 64;
 
 /// Runs of one cost study at most.
 const MOST_RUNS: usize = 256;

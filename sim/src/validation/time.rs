@@ -1,18 +1,16 @@
 //! Rules of duration, accuracy and recording.
 
 use drillsweep_scenario::{
-    Accuracy, AccuracyTarget, FEWEST_SAMPLES, Integrator, NodeChoice, OrbitOutputs, OrbitWindow, Outputs,
-    Scenario, Starts, TOLERANCES, TimeStepping, TimeWindow, WindowName,
+    NodeChoice, OrbitOutputs, OrbitWindow, Outputs, Scenario, Starts, TimeWindow, WindowName,
 };
 
+use super::accuracy::check_accuracy;
 use super::report::Report;
+use super::window::{check_window, is_whole};
 use super::{snapshots, study};
 use crate::force::effect::active_effects;
 use crate::solve::run::spectrum_windows_at_most;
 use crate::string::StringMesh;
-
-/// Two times that differ by less than this part of them are the same.
-const SAME_TIME: f64 = 1e-9;
 
 /// Samples of a node at most: half an hour at 1 kHz. Its orbit and full spectrum over the whole run are computed in memory.
 const MOST_SAMPLES: f64 = 2e6;
@@ -23,29 +21,16 @@ const MOST_SAMPLES_OF_NODES: f64 = (1_u64 << 26) as f64;
 /// Spectrum windows at most.
 const MOST_WINDOWS: usize = 100;
 
-/// Generalized-alpha's largest spectral radius at infinity that two contact iterations are known to be safe with
-/// (docs/model/motion.md, Generalized-alpha).
-const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
-
-/// Runs of one point at most.
-pub(super) const LARGEST_ENSEMBLE: u32 = 64;
-
-/// Smallest step \[s\] at which the implicit methods damp what friction drives in torsional modes of single elements.
-const FINEST_UNDAMPED_STEP: f64 = 1e-4;
-
-/// Contact iterations beyond which a solve has long converged or never will.
-const MOST_SWEEPS: u32 = 1000;
-
 pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
     let recording = &scenario.recording;
     report.positive(scenario.duration, "duration");
     report.positive(recording.rate_hz, "recording.rate_hz");
     check_accuracy(report, scenario);
     report.require(
-        (1..=LARGEST_ENSEMBLE).contains(&scenario.ensemble),
+        (1..=study::LARGEST_ENSEMBLE).contains(&scenario.ensemble),
         "ensemble",
         scenario.ensemble,
-        format!("must be 1 (a single run) to {LARGEST_ENSEMBLE}"),
+        format!("must be 1 (a single run) to {}", study::LARGEST_ENSEMBLE),
     );
     report.require(
         scenario.statics.start == Starts::One
@@ -135,107 +120,6 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
     }
 }
 
-pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
-    let stepping = scenario.accuracy.time_stepping();
-    report.positive(stepping.step, "accuracy.step");
-    let rate = scenario.recording.rate_hz;
-    let adapts = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
-    if !adapts && stepping.step > 0.0 && rate > 0.0 && stepping.step.is_finite() && rate.is_finite() {
-        let (interval, intervals) = (1.0 / rate, stepping.step * rate);
-        let is_part = is_whole(1.0 / intervals);
-        if stepping.integrator == Integrator::Esdirk4 {
-            let is_power_of_two = is_whole(intervals) && (intervals.round() as u64).is_power_of_two();
-            report.require(
-                is_part || is_power_of_two,
-                "accuracy.step",
-                stepping.step,
-                format!(
-                    "must be a whole part of the recording interval, {interval} s, or that times a power of two"
-                ),
-            );
-        } else {
-            report.require(
-                is_part,
-                "accuracy.step",
-                stepping.step,
-                format!("must be a whole part of the recording interval, {interval} s"),
-            );
-        }
-    }
-
-    let effects = active_effects(scenario);
-    let friction_drives_torsion = scenario.contact.static_friction > scenario.contact.dynamic_friction
-        && effects.contact
-        && effects.friction_torque
-        && effects.torsion;
-    report.warn(
-        stepping.integrator != Integrator::Rk4
-            && stepping.step < FINEST_UNDAMPED_STEP
-            && friction_drives_torsion
-            && scenario.damping.stiffness_proportional == 0.0,
-        "accuracy.step",
-        "at so small a step the integrator no longer damps the torsional modes of single elements, some kHz, which the falling \
-         friction curve drives; give damping.stiffness_proportional a value such as 1e-6 s",
-    );
-
-    let explicit = stepping.integrator == Integrator::Rk4;
-    report.require(
-        explicit || (2..=MOST_SWEEPS).contains(&stepping.contact_sweeps),
-        "accuracy.contact_sweeps",
-        stepping.contact_sweeps,
-        format!("must be 2 to {MOST_SWEEPS} for an implicit method"),
-    );
-    if let Some(radius) = stepping.spectral_radius {
-        let of_alpha = stepping.integrator == Integrator::GeneralizedAlpha;
-        report.number(
-            radius,
-            "accuracy.spectral_radius",
-            |radius| of_alpha && (0.0..=LARGEST_SPECTRAL_RADIUS).contains(&radius),
-            if of_alpha {
-                format!(
-                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps the error that the contact sweeps \
-                     leave, and results are wrong without any indication"
-                )
-            } else {
-                "is for generalized_alpha only".to_owned()
-            },
-        );
-    }
-    check_tolerance(report, scenario);
-}
-
-fn check_tolerance(report: &mut Report, scenario: &Scenario) {
-    let within = |tolerance: f64| TOLERANCES.contains(&tolerance);
-    let valid = || format!("must be {} to {}", TOLERANCES.start(), TOLERANCES.end());
-    match scenario.accuracy {
-        Accuracy::Preset(_) | Accuracy::Explicit(TimeStepping { tolerance: None, .. }) => {}
-        Accuracy::Target(AccuracyTarget::Statistics(tolerance)) => {
-            report.number(tolerance, "accuracy.statistics", within, valid());
-        }
-        Accuracy::Target(AccuracyTarget::Trajectory(tolerance)) => {
-            report.number(tolerance, "accuracy.trajectory", within, valid());
-        }
-        Accuracy::Explicit(TimeStepping { integrator, tolerance: Some(tolerance), .. }) => {
-            const PATH: &str = "accuracy.tolerance";
-            match integrator {
-                Integrator::Esdirk4 => report.number(tolerance, PATH, within, valid()),
-                Integrator::Rk4 => report.number(
-                    tolerance,
-                    PATH,
-                    |tolerance| tolerance > 0.0 && tolerance < 0.1,
-                    "must be greater than 0 and less than 0.1",
-                ),
-                Integrator::GeneralizedAlpha => report.number(
-                    tolerance,
-                    PATH,
-                    |_| false,
-                    "is for esdirk4 and rk4: generalized_alpha keeps a fixed step",
-                ),
-            }
-        }
-    }
-}
-
 /// A bound rounded down to three significant digits, as people read it.
 fn in_three_digits(bound: f64) -> f64 {
     let decimals = 2 - bound.log10().floor() as i32;
@@ -289,34 +173,6 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-pub(super) fn check_window(report: &mut Report, scenario: &Scenario, window: &TimeWindow, path: &str) {
-    let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
-    report.not_negative(window.from, format!("{path}.from"));
-    if duration > 0.0 && duration.is_finite() {
-        report.number(
-            window.to,
-            format!("{path}.to"),
-            |to| to <= duration * (1.0 + SAME_TIME),
-            format!("must be within the run of {duration} s"),
-        );
-    }
-    let length = window.to - window.from;
-    if !length.is_finite() {
-        return;
-    }
-    let got = format!("{} to {} s", window.from, window.to);
-    if length <= 0.0 {
-        report.require(false, path, got, "must end after it begins");
-    } else if rate > 0.0 && rate.is_finite() {
-        report.require(
-            length * rate >= FEWEST_SAMPLES * (1.0 - SAME_TIME),
-            path,
-            got,
-            format!("must hold at least {FEWEST_SAMPLES} samples, {} s", FEWEST_SAMPLES / rate),
-        );
-    }
-}
-
 fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for (i, &choice) in choices.iter().enumerate() {
@@ -351,13 +207,11 @@ fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
     }
 }
 
-pub(super) fn is_whole(ratio: f64) -> bool {
-    ratio.round() >= 1.0 && (ratio - ratio.round()).abs() <= SAME_TIME * ratio
-}
-
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{AccuracyPreset, CostStudy, Effect, Switch};
+    use drillsweep_scenario::{
+        Accuracy, AccuracyPreset, AccuracyTarget, CostStudy, Effect, Integrator, Switch, TimeStepping,
+    };
 
     use super::super::report::testing::{problem, problems, warnings};
     use super::*;

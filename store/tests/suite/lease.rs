@@ -37,6 +37,31 @@ pub(crate) async fn a_silent_worker_loses_its_point_when_the_lease_ends_and_not_
     assert_eq!(point_record(&later, "s", 1).await.attempts, 2);
 }
 
+pub(crate) async fn a_claim_finds_a_lease_that_ended_after_the_last_look<E: Engine>() {
+    let engine = E::new();
+    let store = engine.open().await;
+    submit(&store, &sweep("s", [1, 2])).await;
+    // The first claim of a process looks for ended leases; its own, which ends at once, and the second claim follow within a second.
+    let lost = store.claim("first", PHYSICS, -1).await.unwrap().expect("a queued point");
+    assert_eq!(lost.lease.key, key(1));
+    // A queued point goes first, and is the only one taken.
+    assert_eq!(claim(&store, "second").await.lease.key, key(2));
+    assert_eq!(claim(&store, "third").await.lease.key, key(1));
+    assert_eq!(claim_or_none(&store, "fourth").await, None);
+    assert!(!finish(&store, &lost).await);
+}
+
+pub(crate) async fn open_work_of_an_owner_ends_with_its_points<E: Engine>() {
+    let store = E::new().open().await;
+    submit(&store, &sweep("s", [1, 2, 3])).await;
+    assert_eq!(store.open_work("anne").await.unwrap(), 3);
+    assert_eq!(store.open_work("bert").await.unwrap(), 0);
+    let running = claim(&store, "worker").await;
+    assert_eq!(store.open_work("anne").await.unwrap(), 3);
+    assert!(finish(&store, &running).await);
+    assert_eq!(store.open_work("anne").await.unwrap(), 2);
+}
+
 pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;

@@ -75,6 +75,8 @@ macro_rules! conformance {
             }
             lease {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
+                a_claim_finds_a_lease_that_ended_after_the_last_look,
+                open_work_of_an_owner_ends_with_its_points,
                 a_buried_workers_points_are_free_at_once_and_nobody_elses,
                 a_late_writer_changes_nothing,
                 who_reserves_the_blobs_of_a_result_keeps_its_lease,

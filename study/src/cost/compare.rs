@@ -4,7 +4,7 @@ use drillsweep_scenario::StudyReference;
 
 use super::interval::contrast;
 use super::measure::Measure;
-use super::{
+use super::results::{
     Agreement, CostErrors, LineErrors, NamedLine, NodeAgreement, NodeStatistic, Quantity, SpuriousLine,
     StatisticError,
 };

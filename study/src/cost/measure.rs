@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::{TimeStepping, TimeWindow};
 
-use super::Quantity;
+use super::results::Quantity;
 use crate::summary::energy_residual_ratio;
 use drillsweep_sim::math::dof::{U, V};
 use drillsweep_sim::math::signal::{

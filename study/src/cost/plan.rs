@@ -4,13 +4,11 @@ use std::ops::Range;
 
 use drillsweep_scenario::{
     Accuracy, AccuracyPreset, CostStudy, Effect, Integrator, MethodSteps, NodeChoice, OrbitWindow, Outputs,
-    Recording, Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS,
+    Recording, Scenario, Switch, TimeStepping, TimeWindow, USUAL_STEPS, WallLaw,
 };
 
-use super::StudyError;
-use super::total::wall_depends_on_mesh;
-use crate::plan::{MachineSpeed, Plan};
-use drillsweep_sim::force::effect::{EffectDecision, decide_effects};
+use super::results::StudyError;
+use drillsweep_sim::force::effect::{EffectDecision, active_effects, decide_effects};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::run::recorded_nodes;
 use drillsweep_sim::solve::statics::Equilibrium;
@@ -174,19 +172,6 @@ fn name_of(accuracy: &Accuracy) -> &'static str {
     }
 }
 
-/// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
-/// their steps adapt themselves.
-pub fn expected_cpu_time(rows: &[PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
-    let cost = |row: &PlannedRow| {
-        let members = f64::from(row.members.end - row.members.start);
-        Some(members * Plan::of_line(&row.scenario, Some(speed)).ok()?.cpu_time()?)
-    };
-    rows.iter().map(cost).fold((0.0, 0), |(time, unknown), cost| match cost {
-        Some(cost) => (time + cost, unknown),
-        None => (time, unknown + 1),
-    })
-}
-
 /// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
 fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<PlannedRow> {
     let decisions = decide_effects(scenario);
@@ -251,11 +236,17 @@ fn part_of(interval: f64, step: f64) -> f64 {
     interval / (interval / step * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
+/// Whether the wall that a string meets depends on its mesh, so that there is no limit to converge to.
+pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
+    active_effects(scenario).contact && scenario.contact.law == WallLaw::PerNode
+}
+
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::preset;
 
     use super::*;
+    use crate::plan::{MachineSpeed, Plan, expected_cpu_time};
     use drillsweep_sim::validation::validate;
 
     fn planned(change: impl Fn(&mut Scenario)) -> Vec<PlannedRow> {

@@ -1,12 +1,14 @@
 //! The comparison of a study's runs.
 
-use drillsweep_scenario::{Integrator, Scenario};
+use drillsweep_scenario::Scenario;
 
 use super::compare::{Reference, agreements};
 use super::measure::Measure;
+use super::plan::wall_depends_on_mesh;
 use super::plan::{PlannedRow, Role};
-use super::total::{WALL_OF_NODES, total, wall_depends_on_mesh};
-use super::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
+use super::results::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError, rk4};
+use super::row::{one_that_holds, rounded, stepping_words};
+use super::total::{WALL_OF_NODES, total};
 use crate::ensemble::parting_time;
 use drillsweep_sim::solve::run::MotionRegime;
 
@@ -211,14 +213,6 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
     times.filter_map(parted).reduce(f64::min)
 }
 
-/// The run of RK4 with the longest fixed step.
-pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a CostRow> {
-    let is_fixed = |row: &&CostRow| {
-        row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
-    };
-    rows.filter(is_fixed).max_by(|a, b| a.step.total_cmp(&b.step))
-}
-
 /// Enters how many times faster than RK4 with its longest fixed step each line is.
 fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow], settles: bool) {
     let cost_of = |row: &CostRow| if settles { row.cpu_time } else { row.cpu_per_simulated_second };
@@ -328,40 +322,4 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
         cpu_time,
         text,
     })
-}
-
-/// The line itself and, where its steps are fixed, all finer ones of its method: one that hits by chance has finer ones that miss.
-pub(super) fn one_that_holds<'a>(
-    report: &'a CostReport,
-    row: &'a CostRow,
-) -> impl Iterator<Item = &'a CostRow> {
-    let is_finer = |other: &&CostRow| {
-        row.tolerance.is_none()
-            && other.integrator == row.integrator
-            && other.contact_sweeps == row.contact_sweeps
-            && other.tolerance.is_none()
-            && other.step <= row.step
-    };
-    std::iter::once(row).chain(report.compared().filter(is_finer))
-}
-
-/// A line in words: its name where it has one of its own, its method, step and tolerance.
-pub(super) fn stepping_words(row: &CostRow) -> String {
-    let method = row.integrator.name();
-    let mesh = if row.mesh_factor == 1.0 {
-        String::new()
-    } else {
-        format!("element lengths x {}, ", rounded(row.mesh_factor))
-    };
-    let name = if row.name == method { mesh } else { format!("{}, {mesh}", row.name) };
-    let step = format!("{} ms", rounded(1e3 * row.step));
-    match row.tolerance {
-        Some(tolerance) => format!("{name}{method} with a tolerance of {tolerance:e} and steps up to {step}"),
-        None => format!("{name}{method} with a step of {step}"),
-    }
-}
-
-/// A number without the noise of its last digits.
-pub(super) fn rounded(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6
 }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use drillsweep_scenario::{Accuracy, CostStudy, Scenario, StudyReference, TimeStepping, WallLaw, preset};
+use drillsweep_scenario::{
+    Accuracy, CostStudy, Integrator, Scenario, StudyReference, TimeStepping, TimeWindow, WallLaw, preset,
+};
 
 use super::measure::NodeMeasure;
 use super::*;

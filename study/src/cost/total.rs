@@ -5,12 +5,13 @@
 //! Roy 2010, "Verification and validation in scientific computing"). That of each method is measured on the scenario's own mesh, against the
 //! reference. The two are taken to add up, and a method to be off by as much on another mesh.
 
-use drillsweep_scenario::{Integrator, Scenario, WallLaw};
-use serde::{Deserialize, Serialize};
+use drillsweep_scenario::{Integrator, Scenario};
 
-use super::report::{one_that_holds, rounded, stepping_words};
-use super::{CostReport, CostRow, NodeStatistic, Quantity};
-use drillsweep_sim::force::effect::active_effects;
+use super::plan::wall_depends_on_mesh;
+use super::results::{
+    CostReport, CostRow, MeshLimit, MeshPart, NodeStatistic, Quantity, StoppedBy, TotalChoice, TotalCost,
+};
+use super::row::{one_that_holds, rounded, stepping_words};
 
 /// Highest order that is believed. Interpolation between nodes is cubic, so that frequencies converge with the fourth power of the
 /// elements' length; what seems to converge faster does so by chance.
@@ -22,104 +23,6 @@ const LOWEST_ORDER: f64 = 0.5;
 /// Why orbits need not converge where the wall's stiffness is a node's.
 pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are a node's, so a finer mesh meets a stiffer wall and need not \
                                         converge; contact.law = \"per_length\" makes them the length's";
-
-/// Whether the wall that a string meets depends on its mesh, so that there is no limit to converge to.
-pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
-    active_effects(scenario).contact && scenario.contact.law == WallLaw::PerNode
-}
-
-/// The cheapest mesh, method and tolerance for a whole error of orbit size.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct TotalCost {
-    /// Wanted relative error of orbit size over the orbit window, mesh and time together.
-    pub wanted: f64,
-    /// Limits of the orbit sizes with the mesh, node by node; empty if the mesh's part is not known.
-    pub limits: Vec<MeshLimit>,
-    /// Error of each mesh, from coarse to fine; empty if it is not known.
-    pub meshes: Vec<MeshPart>,
-    /// The cheapest that keeps to what is wanted; absent where nothing does.
-    pub choice: Option<TotalChoice>,
-    /// Obstacle if nothing keeps to it.
-    pub stopped_by: Option<StoppedBy>,
-    /// The recommendation in words.
-    pub text: String,
-}
-
-/// Limit of the orbit size of one node as the mesh gets finer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct MeshLimit {
-    /// Measured depth of the node \[m\].
-    pub measured_depth: Option<f64>,
-    /// Order that the three finest meshes show, 0.5 at least and 4 at most; absent where they do not converge monotonically, or are fewer. Then the
-    /// error of a mesh is its distance from the finest, and that of the two finest from each other.
-    pub order: Option<f64>,
-    /// Orbit size that they tend to \[m\]; without an order that of the finest mesh.
-    pub orbit_size: f64,
-}
-
-/// Error of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct MeshPart {
-    /// Factor on the mesh's target element lengths.
-    pub mesh_factor: f64,
-    /// Elements.
-    pub elements: usize,
-    /// Estimated relative error of orbit size, at the worst node. It is known no better than the accuracy `reference`, by which the
-    /// meshes are run.
-    pub error: f64,
-    /// Processor time over that of the scenario's own mesh.
-    pub cpu_ratio: f64,
-}
-
-/// A mesh with a method, and what to expect of them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct TotalChoice {
-    /// Factor on the mesh's target element lengths.
-    pub mesh_factor: f64,
-    /// Elements.
-    pub elements: usize,
-    /// Name of the line; see [`CostRow::name`].
-    pub name: String,
-    /// Method.
-    pub integrator: Integrator,
-    /// Step \[s\]; of an adaptive method the longest.
-    pub step: f64,
-    /// Tolerance of the adaptive step; absent where it is fixed.
-    pub tolerance: Option<f64>,
-    /// Contact iterations a solve at most (implicit methods).
-    pub contact_sweeps: u32,
-    /// The mesh's part of the relative error of orbit size.
-    pub mesh_error: f64,
-    /// The method's part: bias and half its interval's width; of fixed steps also of all finer ones of the method.
-    pub time_error: f64,
-    /// Both together.
-    pub whole_error: f64,
-    /// Expected processor time for the scenario's own duration \[s\]: the method's, times the mesh's ratio.
-    pub cpu_time: f64,
-}
-
-/// Obstacle to the wanted whole error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum StoppedBy {
-    /// Every mesh is off by more.
-    Mesh,
-    /// Every method is off by more.
-    Time,
-    /// Both of these.
-    MeshAndTime,
-    /// Some mesh and some method keep to it, but no two that go together.
-    Sum,
-    /// The mesh's part is not known.
-    UnknownMesh,
-    /// The methods' part is not known.
-    UnknownTime,
-}
 
 /// Looks for the cheapest pair of the report's meshes and methods for a whole error of `wanted`; `base` is the scenario that was run.
 pub(super) fn total(report: &CostReport, base: &Scenario, wanted: f64) -> TotalCost {

@@ -7,9 +7,9 @@
 //! force.) They act at two points of the element, the Gauss points of the weight g, which carry the same force and the same first three
 //! moments as the whole.
 
-use super::ContactNode;
 use super::law::ContactParameters;
 use super::motion::{LateralMotion, Surface};
+use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
 /// An element of the string as it meets the wall.

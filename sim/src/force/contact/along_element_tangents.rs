@@ -4,7 +4,8 @@ use nalgebra::SMatrix;
 
 use super::along_element::{ContactSegment, Place, Plane};
 use super::law::ContactParameters;
-use super::{ContactNode, smooth_static_contact};
+use super::node::ContactNode;
+use super::rest::smooth_static_contact;
 use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 use crate::string::beam::{ElementMatrix, ElementVector};
 

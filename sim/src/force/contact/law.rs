@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction};
 
-use super::ContactNode;
+use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
 /// A [`ContactLaw`] with its switches, ready to evaluate.

@@ -12,6 +12,7 @@ mod along_element;
 mod along_element_tangents;
 mod law;
 mod motion;
+mod node;
 mod rest;
 mod sliding;
 mod wall;
@@ -29,32 +30,7 @@ pub use along_element_tangents::{
 };
 pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
+pub use node::ContactNode;
 pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};
 pub use sliding::{SlidingTangent, sliding_tangent};
 pub use wall::Wall;
-
-use crate::string::MeshNode;
-
-/// Contact data of a node.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactNode<L> {
-    /// Radial clearance j0 \[m\].
-    pub clearance: L,
-    /// Radius R_e at which the string touches the wall \[m\].
-    pub contact_radius: L,
-    /// The node's largest stiffness over that of the law.
-    pub stiffness_share: L,
-    /// The node's largest damping over that of the law.
-    pub damping_share: L,
-}
-
-impl From<&MeshNode> for ContactNode<f64> {
-    fn from(node: &MeshNode) -> Self {
-        Self {
-            clearance: node.clearance,
-            contact_radius: node.contact_radius,
-            stiffness_share: node.stiffness_share,
-            damping_share: node.damping_share,
-        }
-    }
-}

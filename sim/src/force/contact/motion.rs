@@ -1,7 +1,7 @@
 //! The contact force of a moving node.
 
-use super::ContactNode;
 use super::law::ContactParameters;
+use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
 /// Displacements and rates of a node that contact asks for.

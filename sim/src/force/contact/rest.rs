@@ -1,7 +1,7 @@
 //! The contact force of a resting node, with its tangent.
 
-use super::ContactNode;
 use super::law::ContactParameters;
+use super::node::ContactNode;
 
 /// Action of the wall on a node at rest, and how that changes; all zero if it does not touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

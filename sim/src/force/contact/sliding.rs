@@ -1,7 +1,7 @@
 //! How the contact force of a node that slides at the speed of rotation changes with its motion.
 
-use super::ContactNode;
 use super::law::ContactParameters;
+use super::node::ContactNode;
 
 /// Derivatives of the contact's force about a state without vibration, with the sign of a left-hand side: what the wall adds
 /// to stiffness and damping. Rows are the forces along u and v and the torque about e3.

@@ -2,8 +2,9 @@
 
 use drillsweep_scenario::{ActiveEffects, ContactLaw, StartFriction};
 
+use super::along_element::ContactSegment;
 use super::law::ContactParameters;
-use super::{ContactNode, ContactSegment};
+use super::node::ContactNode;
 
 /// The contact law, and the nodes and elements that can touch.
 ///

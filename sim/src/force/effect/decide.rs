@@ -3,7 +3,7 @@
 use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
 
-use super::term;
+use super::register::term;
 use crate::force::term::{LateralWave, Scene};
 
 /// Change of frequencies below which the aggressive rule leaves an effect out.

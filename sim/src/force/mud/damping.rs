@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::element::FlowGeometry;
+use super::geometry::FlowGeometry;
 
 /// Viscous damping of a pipe that whirls at the speed of rotation in a concentric hole, equation (29):
 /// k = 2 sqrt(2) / sqrt(S) (1 + kappa^3) / (1 - kappa^2)^2 rho A_o Omega \[N s/m2\], S = Omega D_o^2 / (4 nu_f).

@@ -1,6 +1,6 @@
 //! The flow past one element.
 
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 
 use drillsweep_scenario::Mud;
 
@@ -8,13 +8,13 @@ use super::damping::{added_mass_coefficient, rotation_damping};
 use super::eccentricity;
 use super::error::{MudError, check};
 use super::friction_factor::FrictionFactor;
+use super::geometry::FlowGeometry;
 use super::laminar::LaminarFlow;
 use super::pipe::pipe_flow;
 use super::regime::{Regime, annulus_limits, correlation_index, pipe_limits};
 use super::rheology::Rheology;
 use super::rotation::rotation_factor;
 use super::slot::slot_flow;
-use crate::string::beam::BeamSection;
 
 /// All quantities of the flow at one cross-section, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,44 +59,6 @@ pub struct ElementFlow {
     pub drag_per_length: f64,
     /// Drag as it acts on the effective tension F_L + A_o G_a = F_L D_ch / (D_ch - D_o) \[N/m\], upward.
     pub effective_drag_per_length: f64,
-}
-
-/// Diameters that the mud sees. Bodies only: a gauge of stabilizer or bit narrows contact, not flow.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlowGeometry {
-    /// Diameter of the hole D_ch \[m\].
-    pub hole_diameter: f64,
-    /// Outer diameter of the pipe D_o \[m\].
-    pub outer_diameter: f64,
-    /// Inner diameter of the pipe D_i \[m\].
-    pub inner_diameter: f64,
-}
-
-impl FlowGeometry {
-    /// Geometry of the flow past a string's section in a hole \[m\].
-    pub fn past(section: &BeamSection, hole_diameter: f64) -> Self {
-        Self { hole_diameter, outer_diameter: section.outer_diameter, inner_diameter: section.inner_diameter }
-    }
-
-    /// Area of the bore A_i \[m2\].
-    pub fn bore_area(&self) -> f64 {
-        FRAC_PI_4 * self.inner_diameter.powi(2)
-    }
-
-    /// Area that the pipe's body displaces A_o \[m2\].
-    pub fn displaced_area(&self) -> f64 {
-        FRAC_PI_4 * self.outer_diameter.powi(2)
-    }
-
-    /// Area of the annulus \[m2\].
-    pub fn annulus_area(&self) -> f64 {
-        FRAC_PI_4 * (self.hole_diameter.powi(2) - self.outer_diameter.powi(2))
-    }
-
-    /// Mean speed in the annulus \[m/s\] of a flow rate \[m3/s\].
-    pub fn annulus_speed(&self, flow_rate: f64) -> f64 {
-        flow_rate / self.annulus_area()
-    }
 }
 
 /// The flow past one element: [`SectionFlow::new`], then [`SectionFlow::at_eccentricity`].

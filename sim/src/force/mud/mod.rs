@@ -13,6 +13,7 @@ mod eccentricity;
 mod element;
 mod error;
 mod friction_factor;
+mod geometry;
 mod laminar;
 mod momentum;
 mod pipe;
@@ -22,8 +23,9 @@ mod rheology;
 mod rotation;
 mod slot;
 
-pub use element::{ElementFlow, FlowGeometry, SectionFlow, element_flow};
+pub use element::{ElementFlow, SectionFlow, element_flow};
 pub use error::MudError;
+pub use geometry::FlowGeometry;
 pub use momentum::FlowMomentum;
 pub use pressure::{PressureStep, Pressures, pressures};
 pub use regime::Regime;

@@ -3,7 +3,7 @@
 use drillsweep_scenario::Mud;
 
 use super::damping::added_mass_coefficient;
-use super::element::FlowGeometry;
+use super::geometry::FlowGeometry;
 
 /// Masses and momentum fluxes of the two flows past one section.
 #[derive(Debug, Clone, Copy, PartialEq)]

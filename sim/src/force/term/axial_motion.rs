@@ -1,7 +1,8 @@
 //! Axial motion: without it every axial displacement stays at its static value and is not solved for.
 
+use super::contribution::Term;
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Call, Scene, Term};
 use crate::math::dof::W;
 
 pub(crate) const TERM: Term = Term { moves: Some(W), ..Term::new(called_for) };

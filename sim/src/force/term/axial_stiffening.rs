@@ -1,7 +1,9 @@
 //! Stiffening by the effective tension: without it tension changes no lateral stiffness.
 
+use super::contribution::Term;
+use super::element::{ElementAtRest, RestTerms};
 use super::scene::yes;
-use super::{Call, ElementAtRest, RestTerms, Scene, Term};
+use super::scene::{Call, Scene};
 
 pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 

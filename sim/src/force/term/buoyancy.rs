@@ -1,7 +1,9 @@
 //! Weight of the mud in the bore less the buoyancy of the mud outside: without it the string weighs what its steel weighs.
 
+use super::contribution::Term;
+use super::element::{ElementAtRest, RestTerms};
+use super::scene::{Call, Scene};
 use super::scene::{has_mud, no};
-use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
 pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 

@@ -3,7 +3,7 @@
 use drillsweep_scenario::{Mud, RayleighDamping};
 use nalgebra::Vector3;
 
-use super::{Account, DAMPING, place_of_damping};
+use super::account::Account;
 use crate::force::mud::{ElementFlow, FlowMomentum};
 use crate::string::beam::{BeamElement, Chord, ElementMatrix, ElementVector};
 use crate::string::well::NodeFrame;
@@ -84,14 +84,13 @@ pub struct ElementInMotion<'a> {
 pub struct MotionTerms {
     /// Mass besides the structure's.
     pub mass: Option<ElementMatrix>,
-    /// Matrices that multiply velocities, by the account of their work, in the order of [`DAMPING`].
-    pub damping: [Option<ElementMatrix>; DAMPING.len()],
+    /// Matrices that multiply velocities, each with the account of its work.
+    pub damping: Vec<(Option<&'static Account>, ElementMatrix)>,
 }
 
 impl MotionTerms {
     /// Adds a matrix that multiplies velocities, with the account of its work; a skew one does none.
-    pub(crate) fn add_damping(&mut self, account: Option<&Account>, matrix: ElementMatrix) {
-        let sum = &mut self.damping[place_of_damping(account)];
-        *sum = Some(sum.map_or(matrix, |sum| sum + matrix));
+    pub(crate) fn add_damping(&mut self, account: Option<&'static Account>, matrix: ElementMatrix) {
+        self.damping.push((account, matrix));
     }
 }

@@ -1,7 +1,8 @@
 //! Gravity: without it neither the string nor the mud weighs anything.
 
+use super::contribution::Term;
 use super::scene::yes;
-use super::{Call, Scene, Term};
+use super::scene::{Call, Scene};
 
 pub(crate) const TERM: Term = Term::new(called_for);
 

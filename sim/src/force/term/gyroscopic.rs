@@ -1,7 +1,9 @@
 //! Gyroscopic coupling of the lateral rotations: without it forward and backward whirl have the same frequency.
 
+use super::contribution::Term;
+use super::element::{ElementInMotion, MotionTerms};
+use super::scene::{Call, Scene};
 use super::scene::{LateralWave, no, yes};
-use super::{Call, ElementInMotion, MotionTerms, Scene, Term};
 
 pub(crate) const TERM: Term =
     Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(called_for) };

@@ -1,6 +1,6 @@
 //! Axial drag of the annular flow on the string, upward: without it the flow changes no tension.
 
-use super::Term;
+use super::contribution::Term;
 use super::scene::has_flow;
 use crate::force::mud::ElementFlow;
 

@@ -1,7 +1,10 @@
 //! Rayleigh damping: without it the structure takes no energy.
 
+use super::account::Account;
+use super::contribution::Term;
+use super::element::{ElementInMotion, MotionTerms};
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Account, Call, ElementInMotion, MotionTerms, Scene, Term};
 
 pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(called_for) };
 

@@ -1,7 +1,9 @@
 //! Stiffening by the internal torque: without it torque couples no lateral motion.
 
+use super::contribution::Term;
+use super::element::{ElementAtRest, RestTerms};
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
 pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 

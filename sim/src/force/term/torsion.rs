@@ -1,7 +1,8 @@
 //! Torsional motion: without it every twist stays at its static value and is not solved for.
 
+use super::contribution::Term;
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Call, Scene, Term};
 use crate::math::dof::THETA_Z;
 
 pub(crate) const TERM: Term = Term { moves: Some(THETA_Z), ..Term::new(called_for) };

@@ -1,7 +1,8 @@
 //! The run in time: without it a run ends after its equilibrium and hydraulic profile.
 
+use super::contribution::Term;
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Call, Scene, Term};
 
 pub(crate) const TERM: Term = Term::new(called_for);
 

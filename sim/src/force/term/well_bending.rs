@@ -1,7 +1,9 @@
 //! Bending of a straight pipe into the curved hole: without it the string is stress-free along the hole's axis.
 
+use super::contribution::Term;
+use super::element::{ElementAtRest, RestTerms};
+use super::scene::{Call, Scene};
 use super::scene::{no, yes};
-use super::{Call, ElementAtRest, RestTerms, Scene, Term};
 
 pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
 

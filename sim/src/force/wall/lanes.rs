@@ -1,5 +1,6 @@
 //! Forces of the wall in motion.
 
+use super::change::SweepChange;
 use super::segments::{LawAlong, SegmentForces, Segments};
 use crate::force::contact::{
     ContactForce, ContactNode, ContactParameters, ContactSegment, LateralMotion, SegmentCompliance,
@@ -74,28 +75,6 @@ struct GroupCompliance {
     lateral: Four,
     /// Displacement of the surface by a friction force at it \[m/N\].
     surface: Four,
-}
-
-/// Changes that the last sweep of a solve still made at nodes that touch.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct SweepChange {
-    /// Largest change of a lateral displacement \[m\].
-    pub(crate) lateral: f64,
-    /// Largest change of a friction coefficient.
-    pub(crate) friction: f64,
-}
-
-impl SweepChange {
-    /// Whether neither exceeds its bound; a change that is not a number does.
-    pub(crate) fn is_within(&self, bound: &SweepChange) -> bool {
-        self.lateral <= bound.lateral && self.friction <= bound.friction
-    }
-
-    /// Takes in the change of another solve of the same step.
-    pub(crate) fn merge(&mut self, other: SweepChange) {
-        self.lateral = self.lateral.max(other.lateral);
-        self.friction = self.friction.max(other.friction);
-    }
 }
 
 impl ContactForces {

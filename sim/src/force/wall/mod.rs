@@ -3,13 +3,15 @@
 //! The law is [`crate::force::contact`]. Its three effects share one evaluation: friction is a coefficient times the normal force, at the penetration and the
 //! sliding speed that the normal force is found with, and an implicit solve makes both agree with one motion.
 
+mod change;
 pub(crate) mod contact;
 pub(crate) mod friction;
 pub(crate) mod friction_torque;
 mod lanes;
 mod segments;
 
-pub(crate) use lanes::{Compliance, ContactForces, NodeContact, SweepChange, WallForces};
+pub(crate) use change::SweepChange;
+pub(crate) use lanes::{Compliance, ContactForces, NodeContact, WallForces};
 
 /// Entry of the ledger: work of normal forces on the motion.
 pub(crate) const NORMAL_WORK: &str = "normal contact";

@@ -3,7 +3,7 @@
 //! Element e joins the nodes e and e + 1, so that the elements of a group begin at the nodes of the group of the same number and end at those after
 //! each of them.
 
-use super::lanes::SweepChange;
+use super::change::SweepChange;
 use crate::force::contact::{
     ContactNode, ContactParameters, ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion,
     Surface, Wall, dot,

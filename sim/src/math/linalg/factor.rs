@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::field::NodalField;
+use super::singular::SingularBlock;
 use super::split::SplitBlock;
 use super::tridiagonal::BlockTridiagonal;
 use crate::math::dof::DOFS;
@@ -21,14 +22,6 @@ pub struct Factor<const D: usize = DOFS> {
     /// `-S^-1 U` of the middle row, S its pivot block.
     middle_from_below: SplitBlock<D>,
     growth: f64,
-}
-
-/// A pivot block could not be inverted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the pivot block of row {row} is singular")]
-pub struct SingularBlock {
-    /// Block row, counted from 0.
-    pub row: usize,
 }
 
 /// Rows eliminated one after the other from one end.

@@ -4,7 +4,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use wide::f64x4;
 
-use super::{Lane, Mask};
+use super::lane::{Lane, Mask};
 
 /// Whether vectors multiply and add in one instruction. Without, they would round twice, and a lane alone once: then all goes lane by
 /// lane, at a twelfth of the speed, to the same bits.

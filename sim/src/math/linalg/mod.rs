@@ -26,6 +26,7 @@ mod field;
 mod four;
 mod lane;
 mod pair;
+mod singular;
 mod skew;
 mod split;
 mod tridiagonal;
@@ -35,11 +36,12 @@ mod tests;
 
 pub use crate::math::dof::DOFS;
 pub use block::Block;
-pub use factor::{Factor, SingularBlock};
+pub use factor::Factor;
 pub use field::{Neighbourhood, NodalField, after, next_lane};
 pub use four::{Four, FourMask};
 pub use lane::{Lane, Mask};
 pub use pair::{General, MatrixPair, Storage, Symmetric};
+pub use singular::SingularBlock;
 pub use skew::{SkewPart, WeightedPair};
 pub use tridiagonal::{BlockTridiagonal, InverseBands, can_couple};
 

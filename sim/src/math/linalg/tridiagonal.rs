@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::block::{Block, Sum};
-use super::factor::SingularBlock;
+use super::singular::SingularBlock;
 use crate::math::dof::{BENDING_ROTATIONS, DOFS};
 
 /// A square matrix of n x n blocks, zero but on three diagonals.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::Pencil;
+use super::pencil::Pencil;
 use super::shifted::ShiftedPencil;
 use crate::force::unbalance;
 use crate::math::dof::{DOFS, THETA_Z, U, V};

@@ -7,9 +7,9 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::arnoldi::Eigenpair;
+use super::mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, ModesError};
 use super::pencil::{Pencil, add_contact, times};
 use super::walk::{Found, eigenpairs, uncounted_eigenpairs};
-use super::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, ModesError};
 use crate::force::contact::sliding_tangent;
 use crate::math::dof::{U, V};
 use crate::math::linalg::BlockTridiagonal;

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::BIT_NOT_JUDGED;
+use super::mode::BIT_NOT_JUDGED;
 use crate::force::contact::{sliding_segment, sliding_tangent};
 use crate::solve::model::{Model, element_values};
 use crate::solve::statics::Equilibrium;

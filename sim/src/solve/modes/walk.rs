@@ -8,8 +8,8 @@ use nalgebra::Complex;
 use super::accuracy::Accuracy;
 use super::arnoldi::{Eigenpair, around};
 use super::count::{Counter, Region};
+use super::mode::{Completeness, ModeSearch, ModesError};
 use super::pencil::Pencil;
-use super::{Completeness, ModeSearch, ModesError};
 
 /// Size of the Krylov space of one shift to begin with.
 const DIMENSION: usize = 80;

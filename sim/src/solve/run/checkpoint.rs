@@ -7,9 +7,9 @@ use super::contact_statistics::ContactStatistics;
 use crate::PHYSICS_VERSION;
 use crate::key::canonical_json;
 use crate::math::signal::Course;
-use crate::solve::step::energy::Work;
 use crate::solve::step::error_estimate::ErrorSum;
 use crate::solve::step::state::State;
+use crate::solve::step::work::Work;
 use crate::solve::step::{EnergyRow, SweepMonitor, TransientError};
 
 /// Everything that changes during a run and is not scratch.

@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::Mud;
 
-use super::StaticsError;
+use super::error::StaticsError;
 
 use crate::force::mud::{
     ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures,

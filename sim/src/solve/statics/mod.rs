@@ -4,24 +4,27 @@
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
 mod continuation;
+mod error;
 mod homotopy;
 mod hydraulics;
 mod newton;
 mod overload;
 mod path;
 mod relaxation;
+mod touch;
 
-use hydraulics::{Sections, drag, node_pressures};
+pub use error::StaticsError;
 pub use newton::NewtonSettings;
 pub use overload::Overload;
 pub(crate) use overload::negative_eigenvalues;
 
 use drillsweep_scenario::{ContactLaw, StartFriction};
+use hydraulics::{Sections, drag, node_pressures};
+use touch::{contact_along, contact_at};
 
-use crate::force::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
-use crate::force::mud::{ElementFlow, MudError, Pressures};
+use crate::force::contact::Wall;
+use crate::force::mud::{ElementFlow, Pressures};
 use crate::math::dof::{DOFS, U, V};
-use crate::math::linalg::SingularBlock;
 use crate::solve::model::{Model, NodalVector, element_values};
 
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
@@ -75,69 +78,6 @@ pub struct StaticsEffort {
     pub hydraulic_passes: usize,
     /// Largest unbalanced force \[N\] or moment \[N m\] left.
     pub residual: f64,
-}
-
-/// Why there is no equilibrium.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum StaticsError {
-    /// Newton's method did not converge.
-    #[error(
-        "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
-        overload::verdict(overload.as_ref())
-    )]
-    NotConverged {
-        /// Iterations made.
-        iterations: usize,
-        /// Largest unbalanced force \[N\].
-        residual: f64,
-        /// Node where it stands, from 1.
-        node: usize,
-        /// The instability that the string has wherever it lies; absent where none is shown.
-        overload: Option<Overload>,
-    },
-    /// The tangent broke down.
-    #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
-    Singular(#[from] SingularBlock),
-    /// The flow past the string has no solution.
-    #[error("the mud at node {node}: {error}")]
-    Mud {
-        /// Upper node of the first element where that shows, from 1.
-        node: usize,
-        /// Error in its computation.
-        error: MudError,
-    },
-    /// The iteration between equilibrium and hydraulics did not converge.
-    #[error(
-        "the equilibrium of string and mud did not converge: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
-    )]
-    HydraulicsNotConverged {
-        /// Passes made.
-        passes: usize,
-        /// Last change of an eccentricity.
-        change: f64,
-        /// Upper node of the element where it is largest, from 1.
-        node: usize,
-    },
-}
-
-impl StaticsError {
-    /// The node where the failure shows most, from 1.
-    pub fn node(&self) -> usize {
-        match self {
-            Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,
-            Self::HydraulicsNotConverged { node, .. } => *node,
-            Self::Singular(block) => block.row + 1,
-        }
-    }
-
-    /// Whether there may be an equilibrium nevertheless, as far as is known.
-    fn is_open(&self) -> bool {
-        match self {
-            Self::NotConverged { overload, .. } => overload.is_none(),
-            Self::Singular(_) | Self::HydraulicsNotConverged { .. } => true,
-            Self::Mud { .. } => false,
-        }
-    }
 }
 
 impl Equilibrium {
@@ -427,27 +367,4 @@ fn against_a_hardening_wall(
         newton::solve(model, &soft, load, displacement, &NewtonSettings::default())?;
     }
     newton::solve(model, &model.wall, load, displacement, &NewtonSettings::default())
-}
-
-/// The quasi-static contact force of a node, where it touches.
-fn contact_at(
-    wall: &Wall,
-    node: usize,
-    displacement: &[f64; DOFS],
-    rotation_speed: f64,
-) -> Option<StaticContactForce> {
-    let site = wall.sites()[node].as_ref()?;
-    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
-    (contact.penetration > 0.0).then_some(contact)
-}
-
-/// The quasi-static contact along an element, where it touches.
-fn contact_along(
-    wall: &Wall,
-    element: usize,
-    displacement: &[[f64; DOFS]],
-    rotation_speed: f64,
-) -> Option<StaticSegmentForce> {
-    let segment = wall.segments().get(element)?;
-    static_segment(wall.law(), segment, &element_values(displacement, element), rotation_speed)
 }

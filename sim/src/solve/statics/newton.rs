@@ -1,6 +1,7 @@
 //! Newton's method with a pseudo-transient shift for the nonlinear equilibrium.
 
-use super::{StaticsError, contact_along, contact_at};
+use super::error::StaticsError;
+use super::touch::{contact_along, contact_at};
 use crate::force::contact::{Wall, planes};
 use crate::force::nodal::Dependence;
 use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::{ActingForces, Forces};
 use super::matrix_work::{BookedStage, Forms, Integrals, symmetric_part};
+use super::work::{WORKING, Work};
 use crate::force::contact::{ContactNode, ContactSegment, Wall};
 use crate::force::effect::{ACCOUNTS, Account, Booked, DAMPING, Side};
 use crate::force::list::ENTRIES;
@@ -19,26 +20,6 @@ use crate::math::dof::{Dofs, THETA_X, THETA_Y, U, V};
 use crate::math::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::solve::model::{Model, NodalVector};
 use crate::solve::motion::DynamicSystem;
-
-/// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Work {
-    /// Of forces, in the order of [`ENTRIES`].
-    forces: [f64; ENTRIES.len()],
-    /// Of the matrices that multiply velocities, in the sense of their accounts' sides, in the order of [`DAMPING`].
-    damping: [f64; WORKING],
-    follower: f64,
-}
-
-/// Number of accounts of damping: those of [`DAMPING`] that do work.
-const WORKING: usize = {
-    let (mut count, mut place) = (0, 0);
-    while place < DAMPING.len() {
-        count += DAMPING[place].is_some() as usize;
-        place += 1;
-    }
-    count
-};
 
 /// The accounts of damping.
 fn working() -> impl Iterator<Item = &'static Account> {

@@ -2,12 +2,13 @@
 //! stiffly accurate, first stage explicit, diagonal 1/4.
 
 use super::adaptive::{self, StepError};
-use super::energy::{Ledger, Work};
+use super::energy::Ledger;
 use super::forces::{ActingForces, Forces, StageAt};
 use super::grid::Grid;
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
-use super::method::{Method, StepAhead, StepCollapsed, StepMade};
-use super::state::{Books, State};
+use super::method::{Books, Method, StepAhead, StepCollapsed, StepMade};
+use super::state::State;
+use super::work::Work;
 use crate::force::points::UnknownStage;
 use crate::math::dof::LATERAL;
 use crate::math::linalg::{Four, Lane, NodalField, SingularBlock};

@@ -1,6 +1,5 @@
 //! The right-hand side of the equations of motion: constant loads, the wall, other forces at nodes.
 
-use super::implicit::held_list;
 use super::state::State;
 use crate::force::nodal::{NodeCompliance, NodeMotion};
 use crate::force::points::{PointForces, PointState, UnknownStage};
@@ -74,7 +73,7 @@ impl<const D: usize> Forces<D> {
             wall: WallForces::new(&model.wall, model.effects.contact, freedoms, held, system.rotation_speed),
             points: PointForces::new(&model.forces, freedoms),
             freedoms,
-            held: held_list(system),
+            held: system.held_places(),
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::forces::{ActingForces, Forces, StageAt};
 use super::implicit::{StageCoefficients, StageMatrix, StageSolver};
-use super::method::{Method, StepAhead, StepCollapsed, StepMade};
-use super::state::{Books, State};
+use super::method::{Books, Method, StepAhead, StepCollapsed, StepMade};
+use super::state::State;
 use crate::force::points::UnknownStage;
 use crate::math::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::solve::motion::DynamicSystem;

@@ -106,7 +106,7 @@ impl StageCoefficients {
             1.0,
             &system.stiffness,
         );
-        for (node, dof) in held_list(system) {
+        for (node, dof) in system.held_places() {
             let largest = (0..D).fold(0.0_f64, |most, i| most.max(matrix.diagonal[node][(i, i)].abs()));
             matrix.diagonal[node][(dof, dof)] =
                 if largest > 0.0 { largest.log2().floor().exp2() } else { 1.0 };
@@ -123,7 +123,7 @@ impl<const D: usize> StageMatrix<D> {
         forces: &Forces<D>,
     ) -> Result<Self, SingularBlock> {
         let matrix = coefficients.matrix(system);
-        let held = held_list(system).into_iter();
+        let held = system.held_places().into_iter();
         Ok(Self {
             factor: Factor::new(&matrix)?,
             coefficients,
@@ -145,7 +145,7 @@ impl<const D: usize> StageSolver<D> {
         let zero = NodalField::zeros(initial.len());
         Self {
             mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
-            held: held_list(system),
+            held: system.held_places(),
             sweeps,
             external: zero.clone(),
             right: zero.clone(),
@@ -289,14 +289,4 @@ pub(crate) fn largest_change<const D: usize>(new: &NodalField<D>, old: &NodalFie
         }
     }
     largest[0].max(largest[1]).to_array().into_iter().fold(0.0, f64::max)
-}
-
-/// Held degrees of freedom as (node, dof).
-pub(crate) fn held_list<const D: usize>(system: &DynamicSystem<D>) -> Vec<(usize, usize)> {
-    system
-        .held
-        .iter()
-        .enumerate()
-        .flat_map(|(node, held)| (0..D).filter(|&dof| held[dof]).map(move |dof| (node, dof)))
-        .collect()
 }

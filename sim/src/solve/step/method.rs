@@ -1,10 +1,12 @@
 //! Interface of the methods of integration in time.
 
 use super::adaptive::Tolerances;
+use super::energy::Ledger;
+use super::error_estimate::ErrorSum;
 use super::forces::{ActingForces, Forces};
 use super::grid::Grid;
 use super::implicit::SweepMonitor;
-use super::state::{Books, State};
+use super::state::State;
 use crate::math::linalg::{Four, NodalField};
 
 /// A method of integration in time.
@@ -67,3 +69,9 @@ pub(crate) struct StepMade {
 /// A step of an adaptive method became too short.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StepCollapsed;
+
+/// Books that a step's work and error are entered in.
+pub(crate) struct Books<'a, const D: usize> {
+    pub(crate) ledger: &'a mut Ledger<D>,
+    pub(crate) errors: &'a mut ErrorSum,
+}

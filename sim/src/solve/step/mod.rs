@@ -17,6 +17,7 @@ pub(crate) mod nodal;
 pub(crate) mod rk4;
 pub(crate) mod stability;
 pub(crate) mod state;
+pub(crate) mod work;
 
 pub use adaptive::SMALLEST_MOTION;
 pub use choice::{longest_step, resolved_hz, rk4_stability_limit, step_count, step_problem, torsion_step};

@@ -6,9 +6,9 @@ use super::energy::Ledger;
 use super::error_estimate::ErrorSum;
 use super::forces::{ActingForces, Forces};
 use super::grid::parts;
-use super::implicit::{SweepMonitor, held_list, largest_change, multiply_add};
-use super::method::{Method, StepAhead, StepCollapsed, StepMade};
-use super::state::{Books, State};
+use super::implicit::{SweepMonitor, largest_change, multiply_add};
+use super::method::{Books, Method, StepAhead, StepCollapsed, StepMade};
+use super::state::State;
 use crate::math::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
 use crate::solve::model::NodalVector;
 use crate::solve::motion::DynamicSystem;
@@ -110,7 +110,7 @@ impl<const D: usize> Rk4<D> {
         Ok(Self {
             mass: mass_factor(system)?,
             damping_and_stiffness: MatrixPair::new(&system.damping, &system.stiffness),
-            held: held_list(system),
+            held: system.held_places(),
             largest_step,
             adaptive: tolerance.map(|tolerance| Adaptive {
                 tolerance,
@@ -272,7 +272,7 @@ impl<const D: usize> Rk4<D> {
 /// The mass matrix, factored; held degrees of freedom have a unit diagonal.
 pub(crate) fn mass_factor<const D: usize>(system: &DynamicSystem<D>) -> Result<Factor<D>, SingularBlock> {
     let mut mass = system.mass.clone();
-    for (node, dof) in held_list(system) {
+    for (node, dof) in system.held_places() {
         mass.diagonal[node][(dof, dof)] = 1.0;
     }
     Factor::new(&mass)

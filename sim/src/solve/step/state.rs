@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::energy::{Ledger, Work};
-use super::error_estimate::ErrorSum;
 use super::nodal;
+use super::work::Work;
 use crate::force::points::PointState;
 use crate::math::linalg::NodalField;
 
@@ -23,12 +22,6 @@ pub(crate) struct State<const D: usize> {
     pub(crate) stage_power: Work,
     /// Step of the adaptive method \[s\].
     pub(crate) adaptive_step: f64,
-}
-
-/// Books that a step's work and error are entered in.
-pub(crate) struct Books<'a, const D: usize> {
-    pub(crate) ledger: &'a mut Ledger<D>,
-    pub(crate) errors: &'a mut ErrorSum,
 }
 
 impl<const D: usize> State<D> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{ElementMatrix, ElementVector};
+use super::matrix::{ElementMatrix, ElementVector};
 use crate::math::dof::{DOFS, THETA_X, THETA_Y};
 use crate::string::well::NodeFrame;
 

@@ -1,6 +1,8 @@
 //! Element matrices in the chord frame.
 
-use super::{BeamSection, ElementMatrix, ElementVector, Shape};
+use super::matrix::{ElementMatrix, ElementVector};
+use super::section::BeamSection;
+use super::shape::Shape;
 use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V, W};
 
 /// Four-point Gauss-Legendre rule on \[0, 1\]: (place, weight), exact to degree 7.

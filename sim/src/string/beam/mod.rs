@@ -6,18 +6,12 @@
 
 mod chord;
 mod element;
+mod matrix;
 mod section;
 mod shape;
 
 pub use chord::Chord;
 pub use element::BeamElement;
+pub use matrix::{ElementMatrix, ElementVector};
 pub use section::BeamSection;
 pub use shape::Shape;
-
-use crate::math::dof::DOFS;
-
-/// A 12 x 12 element matrix.
-pub type ElementMatrix = nalgebra::SMatrix<f64, { 2 * DOFS }, { 2 * DOFS }>;
-
-/// A 12-vector of one element.
-pub type ElementVector = nalgebra::SVector<f64, { 2 * DOFS }>;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::WellPath;
+use super::path::WellPath;
 
 /// Below this sine of the inclination a section has no low side (docs/model/well.md, Frames of the nodes).
 const VERTICAL: f64 = 1e-6;

@@ -1,0 +1,45 @@
+//! Contributions of an effect to the model.
+
+use super::element::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
+use super::scene::{Call, LateralWave, Scene};
+
+/// Contributions of an effect.
+#[derive(Clone, Copy)]
+pub(crate) struct Term {
+    /// Decision whether a scene calls for it, and why.
+    pub(crate) called_for: fn(&Scene<'_>) -> Call,
+    /// Estimated relative change of the frequency of a lateral wave; absent without such an estimate.
+    pub(crate) frequency_change: Option<fn(&LateralWave) -> f64>,
+    /// Adds its terms to an element, whatever the equilibrium.
+    pub(super) at_rest: Option<fn(&ElementAtRest<'_>, &mut RestTerms)>,
+    /// Adds its terms to the motion of an element about the equilibrium.
+    pub(super) in_motion: Option<fn(&ElementInMotion<'_>, &mut MotionTerms)>,
+    /// The degree of freedom of a node that moves only with this effect.
+    pub(super) moves: Option<usize>,
+}
+
+impl Term {
+    /// Term of an effect that only decides whether it is active.
+    pub(crate) const fn new(called_for: fn(&Scene<'_>) -> Call) -> Self {
+        Self { called_for, frequency_change: None, at_rest: None, in_motion: None, moves: None }
+    }
+
+    /// Adds to an element what the effect makes of it, whatever the equilibrium.
+    pub(crate) fn add_at_rest(&self, element: &ElementAtRest<'_>, terms: &mut RestTerms) {
+        if let Some(add) = self.at_rest {
+            add(element, terms);
+        }
+    }
+
+    /// Adds to the motion of an element about the equilibrium.
+    pub(crate) fn add_in_motion(&self, element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
+        if let Some(add) = self.in_motion {
+            add(element, terms);
+        }
+    }
+
+    /// The degree of freedom of a node that moves only with this effect.
+    pub(crate) fn moves(&self) -> Option<usize> {
+        self.moves
+    }
+}

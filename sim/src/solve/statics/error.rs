@@ -1,0 +1,68 @@
+//! Failures of the search for an equilibrium.
+
+use super::overload::{self, Overload};
+use crate::force::mud::MudError;
+use crate::math::linalg::SingularBlock;
+
+/// Why there is no equilibrium.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StaticsError {
+    /// Newton's method did not converge.
+    #[error(
+        "no equilibrium after {iterations} iterations: the largest unbalanced force is {residual:.3e} N at node {node}; {}",
+        overload::verdict(overload.as_ref())
+    )]
+    NotConverged {
+        /// Iterations made.
+        iterations: usize,
+        /// Largest unbalanced force \[N\].
+        residual: f64,
+        /// Node where it stands, from 1.
+        node: usize,
+        /// The instability that the string has wherever it lies; absent where none is shown.
+        overload: Option<Overload>,
+    },
+    /// The tangent broke down.
+    #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
+    Singular(#[from] SingularBlock),
+    /// The flow past the string has no solution.
+    #[error("the mud at node {node}: {error}")]
+    Mud {
+        /// Upper node of the first element where that shows, from 1.
+        node: usize,
+        /// Error in its computation.
+        error: MudError,
+    },
+    /// The iteration between equilibrium and hydraulics did not converge.
+    #[error(
+        "the equilibrium of string and mud did not converge: eccentricities still change by {change:.1e} after {passes} hydraulic passes, most at node {node}"
+    )]
+    HydraulicsNotConverged {
+        /// Passes made.
+        passes: usize,
+        /// Last change of an eccentricity.
+        change: f64,
+        /// Upper node of the element where it is largest, from 1.
+        node: usize,
+    },
+}
+
+impl StaticsError {
+    /// The node where the failure shows most, from 1.
+    pub fn node(&self) -> usize {
+        match self {
+            Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,
+            Self::HydraulicsNotConverged { node, .. } => *node,
+            Self::Singular(block) => block.row + 1,
+        }
+    }
+
+    /// Whether there may be an equilibrium nevertheless, as far as is known.
+    pub(super) fn is_open(&self) -> bool {
+        match self {
+            Self::NotConverged { overload, .. } => overload.is_none(),
+            Self::Singular(_) | Self::HydraulicsNotConverged { .. } => true,
+            Self::Mud { .. } => false,
+        }
+    }
+}

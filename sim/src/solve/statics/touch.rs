@@ -1,0 +1,28 @@
+//! Contact at rest, of nodes and along elements.
+
+use crate::force::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
+use crate::math::dof::{DOFS, U, V};
+use crate::solve::model::element_values;
+
+/// The quasi-static contact force of a node, where it touches.
+pub(super) fn contact_at(
+    wall: &Wall,
+    node: usize,
+    displacement: &[f64; DOFS],
+    rotation_speed: f64,
+) -> Option<StaticContactForce> {
+    let site = wall.sites()[node].as_ref()?;
+    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
+    (contact.penetration > 0.0).then_some(contact)
+}
+
+/// The quasi-static contact along an element, where it touches.
+pub(super) fn contact_along(
+    wall: &Wall,
+    element: usize,
+    displacement: &[[f64; DOFS]],
+    rotation_speed: f64,
+) -> Option<StaticSegmentForce> {
+    let segment = wall.segments().get(element)?;
+    static_segment(wall.law(), segment, &element_values(displacement, element), rotation_speed)
+}

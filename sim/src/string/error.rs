@@ -1,0 +1,40 @@
+//! Failures of the mesh.
+
+/// A string of more elements than this is refused.
+pub const MAX_ELEMENTS: usize = 20_000;
+
+/// A string that cannot be cut into elements. Sections, gauges and masses are counted from 0.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// There is no section.
+    #[error("the string has no sections")]
+    NoSections,
+    /// A section without pieces or with pieces without length.
+    #[error("section {section} has no length")]
+    NoLength {
+        /// The section.
+        section: usize,
+    },
+    /// Two tool joints leave nothing of the piece's body, or have no length.
+    #[error("section {section} has no room for a body between its tool joints")]
+    NoRoomForToolJoints {
+        /// The section.
+        section: usize,
+    },
+    /// A target element length that is not a positive number.
+    #[error("the target element length {0} m is not a positive number")]
+    Target(f64),
+    /// More than [`MAX_ELEMENTS`] elements.
+    #[error("the mesh has more than {MAX_ELEMENTS} elements")]
+    TooManyElements,
+    /// A gauge or mass above the top or below the bit.
+    #[error("{what} {index} at {measured_depth} m is not on the string")]
+    OffString {
+        /// "gauge" or "unbalance mass".
+        what: &'static str,
+        /// Its place in the list.
+        index: usize,
+        /// Its measured depth \[m\].
+        measured_depth: f64,
+    },
+}

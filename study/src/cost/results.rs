@@ -1,0 +1,519 @@
+//! Results of a cost study.
+
+use drillsweep_scenario::{Effect, Integrator, TimeWindow};
+use serde::{Deserialize, Serialize};
+
+use drillsweep_sim::solve::model::ModelError;
+use drillsweep_sim::solve::run::{MotionRegime, TransientError};
+use drillsweep_sim::solve::statics::StaticsError;
+
+/// Quantity of a run that a study compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Root mean square distance from the mean position, of each recorded node over the orbit window.
+    OrbitSize,
+    /// Standard deviation of the distance from the hole's axis, of each recorded node over the orbit window.
+    RadiusDeviation,
+    /// Mean distance from the hole's axis, of each recorded node over the orbit window.
+    MeanRadius,
+    /// Mean over the orbit window of the sum of all normal forces.
+    ContactForce,
+    /// Standard deviation of the twist's rate, of each recorded node over the orbit window.
+    TorsionalSpeed,
+    /// Spectral lines of each recorded node over the last spectrum window.
+    Lines,
+}
+
+impl Quantity {
+    /// All quantities.
+    pub const ALL: &[Quantity] = &[
+        Quantity::OrbitSize,
+        Quantity::RadiusDeviation,
+        Quantity::MeanRadius,
+        Quantity::ContactForce,
+        Quantity::TorsionalSpeed,
+        Quantity::Lines,
+    ];
+
+    /// The name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::OrbitSize => "orbit_size",
+            Quantity::RadiusDeviation => "radius_deviation",
+            Quantity::MeanRadius => "mean_radius",
+            Quantity::ContactForce => "contact_force",
+            Quantity::TorsionalSpeed => "torsional_speed",
+            Quantity::Lines => "lines",
+        }
+    }
+
+    /// The name in a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Quantity::OrbitSize => "orbit size",
+            Quantity::RadiusDeviation => "standard deviation of radius",
+            Quantity::MeanRadius => "mean radius",
+            Quantity::ContactForce => "contact force",
+            Quantity::TorsionalSpeed => "torsional speed",
+            Quantity::Lines => "lines",
+        }
+    }
+
+    /// Whether it is one value of the whole string, not one of each recorded node.
+    pub(crate) fn is_of_string(self) -> bool {
+        self == Quantity::ContactForce
+    }
+
+    /// Whether it is a deviation, which takes longer to converge than a size.
+    pub(crate) fn is_deviation(self) -> bool {
+        matches!(self, Quantity::RadiusDeviation | Quantity::TorsionalSpeed | Quantity::Lines)
+    }
+
+    /// Values below this are rest: a nanometre, a micronewton, a nanoradian a second. Differences are relative to no less.
+    pub(crate) fn floor(self) -> f64 {
+        if self == Quantity::ContactForce { 1e-6 } else { 1e-9 }
+    }
+}
+
+/// The outcome of a study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct CostReport {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Simulated time of each run \[s\], at most if they settle.
+    pub duration: f64,
+    /// True if each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, against the
+    /// settled values of the two methods on a finer mesh.
+    pub settles: bool,
+    /// Duration of the scenario itself \[s\]. Where the runs are shorter, the windows are not those that a summary has, and
+    /// what comes later is not compared.
+    pub scenario_duration: f64,
+    /// Window of orbit size, radius, contact force and torsional speed \[s\]; of runs that settle that of the reference's first method.
+    pub orbit_window: TimeWindow,
+    /// Window of the lines \[s\]; absent where the scenario has none, or runs have their own.
+    pub spectrum_window: Option<TimeWindow>,
+    /// Members of the ensemble that each method ran.
+    pub members: u32,
+    /// Time \[s\] at which the reference's methods, or two members of one of them, have parted: histories are compared up to
+    /// there. Absent where they stayed together.
+    pub histories_part_at: Option<f64>,
+    /// The two methods whose agreement makes the reference, each against the other; of an ablation the whole scenario at its
+    /// own accuracy.
+    pub references: Vec<CostRow>,
+    /// How far these two agree, quantity by quantity. Empty where one of them failed, and of an ablation.
+    pub agreements: Vec<Agreement>,
+    /// Presets, methods and steps.
+    pub methods: Vec<CostRow>,
+    /// The other start at the scenario's accuracy: an equilibrium with friction at break-away if the scenario's slides, and the other way
+    /// round. Of runs that settle alone.
+    pub starts: Vec<CostRow>,
+    /// Meshes, at the accuracy `reference`, against the finest; of runs that settle at the scenario's own accuracy, against the reference.
+    /// With the contact law `per_node` a finer mesh is another, stiffer wall, and these rows need not converge.
+    pub meshes: Vec<CostRow>,
+    /// The scenario without one effect at a time, against the whole: what stands as an error is what the effect changes.
+    pub effects: Vec<CostRow>,
+    /// Cheapest methods for some accuracies.
+    pub recommendations: Vec<Recommendation>,
+    /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent where none was asked for.
+    pub total: Option<TotalCost>,
+    /// Reasons for doubt.
+    pub warnings: Vec<String>,
+}
+
+impl CostReport {
+    /// How far the reference's two methods agree in a quantity; absent where it was not compared.
+    pub fn agreement(&self, quantity: Quantity) -> Option<&Agreement> {
+        self.agreements.iter().find(|agreement| agreement.quantity == quantity)
+    }
+
+    /// Number of lines, those of the reference included.
+    pub fn rows(&self) -> usize {
+        self.references.len()
+            + self.methods.len()
+            + self.starts.len()
+            + self.meshes.len()
+            + self.effects.len()
+    }
+
+    /// The run of RK4 with fixed steps that speeds are relative to, that with the longest step; absent where none completed.
+    pub fn rk4(&self) -> Option<&CostRow> {
+        rk4(self.references.iter().chain(&self.methods))
+    }
+
+    /// The lines of a work-precision comparison: the reference's two methods and all others; none of an ablation.
+    pub fn compared(&self) -> impl Iterator<Item = &CostRow> {
+        let references = if self.effects.is_empty() { self.references.as_slice() } else { &[] };
+        references.iter().chain(&self.methods)
+    }
+}
+
+/// How far the two methods of a reference agree in one quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Agreement {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Largest relative difference of any node; of lines the largest relative difference of an amplitude.
+    pub difference: f64,
+    /// Half the width of the difference's 95 % confidence interval, where it is least sure; absent with one member, and of lines.
+    pub half_width: Option<f64>,
+    /// Difference up to which they agree.
+    pub bound: f64,
+    /// Whether they agree at any node. If not, no reference exists: nothing is said of errors in this quantity. Lines agree where
+    /// both have the same ones at all nodes.
+    pub has_reference: bool,
+    /// Node by node, and of lines, line by line.
+    pub nodes: Vec<NodeAgreement>,
+}
+
+/// How far the two methods of a reference agree at one node.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct NodeAgreement {
+    /// Measured depth of the node \[m\]; absent where the value is the whole string's.
+    pub measured_depth: Option<f64>,
+    /// Values of the two: lengths \[m\], forces \[N\], speeds \[rad/s\].
+    pub values: [f64; 2],
+    /// Their relative difference.
+    pub difference: f64,
+    /// Whether they agree here. If not, no reference exists for this node, and errors are those of the others.
+    pub has_reference: bool,
+}
+
+impl Agreement {
+    /// Measured depths of the nodes without a reference \[m\].
+    pub(super) fn depths_without(&self) -> Vec<f64> {
+        let without = self.nodes.iter().filter(|node| !node.has_reference);
+        without.filter_map(|node| node.measured_depth).collect()
+    }
+
+    /// Largest difference of the nodes that have a reference.
+    pub(super) fn agreed_difference(&self) -> f64 {
+        let agreed = self.nodes.iter().filter(|node| node.has_reference);
+        agreed.fold(0.0, |most, node| most.max(node.difference))
+    }
+}
+
+/// One line of a study against its reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct CostRow {
+    /// `draft`, `standard` or `reference` for these accuracies, `A` and `B` for the two methods whose agreement makes the
+    /// study's reference, and the integrator's name for all others.
+    pub name: String,
+    /// The effect that was switched off; absent where none was.
+    pub effect: Option<Effect>,
+    /// Method.
+    pub integrator: Integrator,
+    /// Step \[s\]; of an adaptive method the longest.
+    pub step: f64,
+    /// Tolerance of the adaptive step; absent where it is fixed.
+    pub tolerance: Option<f64>,
+    /// Contact iterations a solve at most (implicit methods).
+    pub contact_sweeps: u32,
+    /// Factor on the mesh's target element lengths, next to the scenario's own at its own accuracy.
+    pub mesh_factor: f64,
+    /// Elements of the mesh.
+    pub elements: usize,
+    /// Steps made by the first member.
+    pub steps: u64,
+    /// Parts into which each step was cut so that the contact iterations are stable.
+    pub step_subdivisions: u32,
+    /// Simulated time of the first member \[s\]; 0 where it failed.
+    pub simulated_time: f64,
+    /// Kind of motion over the window of the first member's statistics; absent where it failed.
+    pub regime: Option<MotionRegime>,
+    /// Processor time of the run in time \[s\], mean of the members.
+    pub cpu_time: f64,
+    /// Processor time per simulated second.
+    pub cpu_per_simulated_second: f64,
+    /// Speed relative to RK4 with the longest of its fixed steps, usually 0.95 of its stability limit on the mesh, by processor time per simulated
+    /// second, or of runs that settle by that of the whole run; absent where the study has none.
+    pub speed_over_rk4: Option<f64>,
+    /// Its errors against the reference; absent if it failed.
+    pub errors: Option<CostErrors>,
+    /// Why it failed.
+    pub failure: Option<String>,
+}
+
+/// Errors of a line against the reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct CostErrors {
+    /// Orbit size; absent where there is no reference for it at any node, as in all that follow.
+    pub orbit_size: Option<StatisticError>,
+    /// Standard deviation of the distance from the hole's axis.
+    pub radius_deviation: Option<StatisticError>,
+    /// Mean distance from the hole's axis.
+    pub mean_radius: Option<StatisticError>,
+    /// Mean sum of all normal forces.
+    pub contact_force: Option<StatisticError>,
+    /// Standard deviation of the twist's rate.
+    pub torsional_speed: Option<StatisticError>,
+    /// Spectral lines; absent without a spectrum window as well.
+    pub lines: Option<LineErrors>,
+    /// L2 distance of the first member's (u, v) at the recorded nodes from those of the reference's first method, up to where
+    /// histories part, over the motion away from the start: of the history, not of anything after it.
+    pub trajectory: Option<f64>,
+    /// Static position: largest distance of a node, over the hole's radius.
+    pub static_position: f64,
+    /// C_f, relative, mean over the string's length; absent without mud.
+    pub friction_coefficient: Option<f64>,
+    /// Energy residual over the net work of the contacts, largest of the members; absent where there was none.
+    pub energy: Option<f64>,
+    /// The run's own estimate of its error, relative to the motion, over the whole run; largest of the members.
+    pub estimate: f64,
+}
+
+impl CostErrors {
+    /// The error of a statistic; absent for lines, which are not one number, and where there is no reference.
+    pub fn statistic(&self, quantity: Quantity) -> Option<&StatisticError> {
+        match quantity {
+            Quantity::OrbitSize => self.orbit_size.as_ref(),
+            Quantity::RadiusDeviation => self.radius_deviation.as_ref(),
+            Quantity::MeanRadius => self.mean_radius.as_ref(),
+            Quantity::ContactForce => self.contact_force.as_ref(),
+            Quantity::TorsionalSpeed => self.torsional_speed.as_ref(),
+            Quantity::Lines => None,
+        }
+    }
+}
+
+/// The error of a statistic at the worst recorded node, where bias and half the interval's width together are largest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct StatisticError {
+    /// Mean of the members less the reference, relative to the reference.
+    pub bias: f64,
+    /// Half the width of the bias's 95 % confidence interval (Welch); absent, and confidence unknown, with one member.
+    pub half_width: Option<f64>,
+    /// Standard deviation of the members, relative to the reference; absent with one member.
+    pub spread: Option<f64>,
+    /// Whether the interval excludes zero; absent with one member.
+    pub significant: Option<bool>,
+    /// Measured depth of the worst node \[m\]; absent where the statistic is the whole string's.
+    pub measured_depth: Option<f64>,
+    /// All recorded nodes that have a reference.
+    pub nodes: Vec<NodeStatistic>,
+}
+
+impl StatisticError {
+    /// Bound of the bias: its size and half its interval's width, at the worst node.
+    pub fn bound(&self) -> f64 {
+        self.bias.abs() + self.half_width.unwrap_or(0.0)
+    }
+}
+
+/// A statistic of one recorded node, or of the whole string, against the reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct NodeStatistic {
+    /// Measured depth of the node \[m\]; absent where the statistic is the whole string's.
+    pub measured_depth: Option<f64>,
+    /// The reference's value: length \[m\], force \[N\] or speed \[rad/s\].
+    pub reference: f64,
+    /// Mean of the members.
+    pub value: f64,
+    /// Their difference, relative to the reference.
+    pub bias: f64,
+    /// Half the width of the bias's 95 % confidence interval; absent with one member.
+    pub half_width: Option<f64>,
+    /// Standard deviation of the members, relative to the reference; absent with one member.
+    pub spread: Option<f64>,
+    /// Standard deviation of the reference's members; absent with one member.
+    pub reference_spread: Option<f64>,
+}
+
+impl NodeStatistic {
+    pub(super) fn bound(&self) -> f64 {
+        self.bias.abs() + self.half_width.unwrap_or(0.0)
+    }
+}
+
+/// Lines of the members' mean spectra against those of the reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct LineErrors {
+    /// Largest distance of a line from the reference's \[Hz\], of those that are there; absent where none is.
+    pub frequency_hz: Option<f64>,
+    /// Largest relative error of a line's amplitude.
+    pub amplitude: f64,
+    /// Lines of the reference that are not there at half their height within 0.3 Hz.
+    pub missing: u32,
+    /// The reference's three strongest lines of each recorded node, as far as they reach a twentieth of its highest.
+    pub named: Vec<NamedLine>,
+    /// Lines above a twentieth of the reference's highest of that node, which the reference does not have at half their height
+    /// within 0.3 Hz; at most ten of each node.
+    pub spurious: Vec<SpuriousLine>,
+}
+
+/// One of the reference's lines.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct NamedLine {
+    /// Measured depth of the node \[m\].
+    pub measured_depth: f64,
+    /// The reference's frequency \[Hz\]; negative is backward whirl.
+    pub frequency_hz: f64,
+    /// The reference's amplitude \[m\].
+    pub amplitude: f64,
+    /// Frequency at which it was found \[Hz\]; absent where it is missing.
+    pub found_hz: Option<f64>,
+    /// Relative error of the amplitude.
+    pub amplitude_error: f64,
+}
+
+/// A line that the reference does not have.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct SpuriousLine {
+    /// Measured depth of the node \[m\].
+    pub measured_depth: f64,
+    /// Frequency \[Hz\]; negative is backward whirl.
+    pub frequency_hz: f64,
+    /// Amplitude over that of the reference's highest line.
+    pub height: f64,
+}
+
+/// The cheapest way to some accuracy of a quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Recommendation {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Wanted relative error over the orbit window: bias and half its interval's width together.
+    pub accuracy: f64,
+    /// Name of the line; absent, as all that follows, where none of the study reaches it or the references agree less well.
+    pub name: Option<String>,
+    /// Method.
+    pub integrator: Option<Integrator>,
+    /// Step \[s\]; of an adaptive method the longest.
+    pub step: Option<f64>,
+    /// Tolerance of the adaptive step; absent where it is fixed.
+    pub tolerance: Option<f64>,
+    /// Processor time for the scenario's own duration \[s\].
+    pub cpu_time: Option<f64>,
+    /// The recommendation in words.
+    pub text: String,
+}
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// There is no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// There is no equilibrium.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
+    /// The explicit method's limit cannot be found.
+    #[error(transparent)]
+    Transient(#[from] TransientError),
+    /// Every method of the reference failed.
+    #[error("the reference failed: {0}")]
+    Reference(String),
+}
+
+/// The cheapest mesh, method and tolerance for a whole error of orbit size.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct TotalCost {
+    /// Wanted relative error of orbit size over the orbit window, mesh and time together.
+    pub wanted: f64,
+    /// Limits of the orbit sizes with the mesh, node by node; empty if the mesh's part is not known.
+    pub limits: Vec<MeshLimit>,
+    /// Error of each mesh, from coarse to fine; empty if it is not known.
+    pub meshes: Vec<MeshPart>,
+    /// The cheapest that keeps to what is wanted; absent where nothing does.
+    pub choice: Option<TotalChoice>,
+    /// Obstacle if nothing keeps to it.
+    pub stopped_by: Option<StoppedBy>,
+    /// The recommendation in words.
+    pub text: String,
+}
+
+/// Limit of the orbit size of one node as the mesh gets finer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct MeshLimit {
+    /// Measured depth of the node \[m\].
+    pub measured_depth: Option<f64>,
+    /// Order that the three finest meshes show, 0.5 at least and 4 at most; absent where they do not converge monotonically, or are fewer. Then the
+    /// error of a mesh is its distance from the finest, and that of the two finest from each other.
+    pub order: Option<f64>,
+    /// Orbit size that they tend to \[m\]; without an order that of the finest mesh.
+    pub orbit_size: f64,
+}
+
+/// Error of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct MeshPart {
+    /// Factor on the mesh's target element lengths.
+    pub mesh_factor: f64,
+    /// Elements.
+    pub elements: usize,
+    /// Estimated relative error of orbit size, at the worst node. It is known no better than the accuracy `reference`, by which the
+    /// meshes are run.
+    pub error: f64,
+    /// Processor time over that of the scenario's own mesh.
+    pub cpu_ratio: f64,
+}
+
+/// A mesh with a method, and what to expect of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct TotalChoice {
+    /// Factor on the mesh's target element lengths.
+    pub mesh_factor: f64,
+    /// Elements.
+    pub elements: usize,
+    /// Name of the line; see [`CostRow::name`].
+    pub name: String,
+    /// Method.
+    pub integrator: Integrator,
+    /// Step \[s\]; of an adaptive method the longest.
+    pub step: f64,
+    /// Tolerance of the adaptive step; absent where it is fixed.
+    pub tolerance: Option<f64>,
+    /// Contact iterations a solve at most (implicit methods).
+    pub contact_sweeps: u32,
+    /// The mesh's part of the relative error of orbit size.
+    pub mesh_error: f64,
+    /// The method's part: bias and half its interval's width; of fixed steps also of all finer ones of the method.
+    pub time_error: f64,
+    /// Both together.
+    pub whole_error: f64,
+    /// Expected processor time for the scenario's own duration \[s\]: the method's, times the mesh's ratio.
+    pub cpu_time: f64,
+}
+
+/// Obstacle to the wanted whole error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum StoppedBy {
+    /// Every mesh is off by more.
+    Mesh,
+    /// Every method is off by more.
+    Time,
+    /// Both of these.
+    MeshAndTime,
+    /// Some mesh and some method keep to it, but no two that go together.
+    Sum,
+    /// The mesh's part is not known.
+    UnknownMesh,
+    /// The methods' part is not known.
+    UnknownTime,
+}
+
+/// The run of RK4 with the longest fixed step.
+pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a CostRow> {
+    let is_fixed = |row: &&CostRow| {
+        row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
+    };
+    rows.filter(is_fixed).max_by(|a, b| a.step.total_cmp(&b.step))
+}

@@ -1,8 +1,8 @@
 //! The picture of motion over time.
 
 use drillsweep_api::problem::ProblemDetails;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{Name, Quantity, Variant, units};
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity, Variant, units};
 use drillsweep_table::{Column, Table};
 
 use crate::picture::{Drawing, Line, LinePlot};

@@ -1,9 +1,9 @@
 //! The picture of a node's path across its hole.
 
 use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::units;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::units;
 
 use crate::picture::{Drawing, OrbitPlot};
 use crate::shown::{node_of, numbers, width};

@@ -1,8 +1,8 @@
 //! The picture of values along the string.
 
 use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
 
 use crate::picture::{Drawing, Line, LinePlot, VerticalAxis};
 use crate::shown::{Shown, numbers, with_unit};

@@ -1,9 +1,9 @@
 //! Columns of a table in the words and units in which engineers read them.
 
 use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity, Unit, units};
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{self, Name, Quantity, Unit, units};
 use indexmap::IndexMap;
 use serde_json::Value;
 
@@ -34,7 +34,10 @@ impl<'t> Shown<'t> {
             let Some((name, _)) = table.columns.get_key_value(*name) else {
                 return Err(ProblemDetails::no_such_column(table, name).into());
             };
-            if names.first().is_some_and(|first| quantity::unit(first) != quantity::unit(name)) {
+            if names
+                .first()
+                .is_some_and(|first| drillsweep_quantity::unit(first) != drillsweep_quantity::unit(name))
+            {
                 let detail =
                     format!("the columns of a picture must have one unit; {name} has another than the first");
                 return Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into());
@@ -77,7 +80,7 @@ pub(crate) fn amount(name: &str, value: f64) -> String {
 
 /// Words that columns have in common: their quantity, or else its dimension.
 fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
-    let quantities: Vec<&Quantity> = names.filter_map(quantity::of).collect();
+    let quantities: Vec<&Quantity> = names.filter_map(drillsweep_quantity::of).collect();
     match quantities.as_slice() {
         [] => String::new(),
         [first, rest @ ..] if rest.iter().all(|other| other == first) => first.label.to_owned(),

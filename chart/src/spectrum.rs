@@ -1,9 +1,9 @@
 //! The picture of a full spectrum.
 
 use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::units;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::units;
 use serde_json::Value;
 
 use crate::picture::axis::three_digits;

@@ -2,7 +2,7 @@
 
 use drillsweep_api::problem::ProblemDetails;
 use drillsweep_api::view::verification::{Findings, is_bias_column};
-use drillsweep_table::quantity::columns::*;
+use drillsweep_quantity::columns::*;
 use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 

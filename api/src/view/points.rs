@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-use drillsweep_table::quantity::{Variant, columns};
+use drillsweep_quantity::{Variant, columns};
 use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde::Deserialize;

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use drillsweep_quantity::{Name, Quantity, Variant, columns};
 use drillsweep_scenario::Promise;
-use drillsweep_table::quantity::{Name, Variant, columns};
-use drillsweep_table::{Column, Quantity, Table};
+use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};

@@ -42,7 +42,6 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "drillsweep-worker",
         &[
-            "drillsweep-api",
             "drillsweep-quantity",
             "drillsweep-scenario",
             "drillsweep-sim",

@@ -9,18 +9,40 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// Permitted dependencies among the workspace's own crates.
 const ARROWS: &[(&str, &[&str])] = &[
-    ("drillsweep-scenario", &[]),
+    ("drillsweep-quantity", &[]),
+    ("drillsweep-scenario", &["drillsweep-quantity"]),
     ("drillsweep-sim", &["drillsweep-scenario"]),
     ("drillsweep-study", &["drillsweep-scenario", "drillsweep-sim"]),
-    ("drillsweep-table", &[]),
-    ("drillsweep-api", &["drillsweep-scenario", "drillsweep-sim", "drillsweep-study", "drillsweep-table"]),
-    ("drillsweep-chart", &["drillsweep-api", "drillsweep-scenario", "drillsweep-table"]),
+    ("drillsweep-table", &["drillsweep-quantity"]),
+    (
+        "drillsweep-api",
+        &[
+            "drillsweep-quantity",
+            "drillsweep-scenario",
+            "drillsweep-sim",
+            "drillsweep-study",
+            "drillsweep-table",
+        ],
+    ),
+    (
+        "drillsweep-chart",
+        &["drillsweep-api", "drillsweep-quantity", "drillsweep-scenario", "drillsweep-table"],
+    ),
     ("drillsweep-store", &[]),
-    ("drillsweep-server", &["drillsweep-api", "drillsweep-chart", "drillsweep-store", "drillsweep-table"]),
+    (
+        "drillsweep-server",
+        &[
+            "drillsweep-api",
+            "drillsweep-chart",
+            "drillsweep-quantity",
+            "drillsweep-store",
+            "drillsweep-table",
+        ],
+    ),
     (
         "drillsweep-worker",
         &[
-            "drillsweep-api",
+            "drillsweep-quantity",
             "drillsweep-scenario",
             "drillsweep-sim",
             "drillsweep-store",
@@ -33,6 +55,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "drillsweep-api",
             "drillsweep-chart",
+            "drillsweep-quantity",
             "drillsweep-scenario",
             "drillsweep-server",
             "drillsweep-sim",
@@ -182,7 +205,7 @@ fn arrows_down(folder: &str, layers: &[&str]) -> usize {
 
 /// Folders of the crates.
 const CRATES: &[&str] =
-    &["api", "chart", "cli", "scenario", "server", "sim", "store", "study", "table", "worker"];
+    &["api", "chart", "cli", "quantity", "scenario", "server", "sim", "store", "study", "table", "worker"];
 
 #[test]
 fn no_module_imports_itself_by_way_of_others() {

@@ -29,13 +29,13 @@ pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
 pub use event::{DeletedSweep, PointEvent};
 pub use expand::{
-    Expansion, Interruption, PointKey, PointKeys, SweepPoint, UNINTERRUPTED, check_patch, compose, expand,
+    Expansion, Interruption, PointKey, PointKeys, SweepPoint, UNINTERRUPTED, check_patch, expand,
     expand_added, key_text,
 };
 pub use listed::ListedPoints;
 pub use point::{
-    ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureClass, FailureList, MissingFile,
-    PointDetail, PointError, PointLinks, PointList, PointRow, PointState, SelectedPointList,
+    ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureList, MissingFile, PointDetail, PointLinks,
+    PointList, PointRow, PointState, SelectedPointList,
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
@@ -50,5 +50,5 @@ pub use sweep::{
 };
 pub use verify::{promise_of_scenario, sample};
 
-pub use drillsweep_scenario::{ScenarioRequest, read_strictly};
+pub use drillsweep_scenario::{FailureClass, PointError, ScenarioRequest, compose, read_strictly};
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -1,10 +1,10 @@
 //! The picture of motion over time.
 
-use drillsweep_api::problem::ProblemDetails;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{Name, Quantity, Variant, units};
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity, Variant, units};
 use drillsweep_table::{Column, Table};
 
+use crate::error::ChartError;
 use crate::picture::{Drawing, Line, LinePlot};
 use crate::place::{Place, at_place, grouped};
 use crate::shown::{Shown, node_of, numbers, shown_in, with_unit};
@@ -14,13 +14,13 @@ use crate::shown::{Shown, node_of, numbers, shown_in, with_unit};
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them.
-pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, Box<ProblemDetails>> {
+pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, ChartError> {
     let rotation =
         ROTATION.iter().filter(|_| fields.is_none()).filter_map(|quantity| lowest(layout, quantity));
     let lines = lines_of_history(layout, fields).into_iter().chain(rotation);
     let mut names: Vec<String> = lines.map(str::to_owned).collect();
     names.push(TIME.name.to_owned());
-    layout.select(&names).map_err(|missing| Box::new(ProblemDetails::no_such_column(layout, &missing)))
+    layout.select(&names).map_err(|missing| ChartError::no_such_column(layout, &missing))
 }
 
 /// The lowest node of a string, and what snapshots tell of its rotation.
@@ -47,7 +47,7 @@ pub fn history(
     places: &[Place],
     bit: Option<&Bit>,
     title: &str,
-) -> Result<Drawing, Box<ProblemDetails>> {
+) -> Result<Drawing, ChartError> {
     let names = lines_of_history(table, fields);
     let shown = Shown::of(table, &names)?;
     let y_label = shown.label(places);
@@ -141,7 +141,7 @@ fn over_time(
     y_label: &str,
     line_name: &dyn Fn(&str) -> String,
     [title, subtitle]: [&str; 2],
-) -> Result<Drawing, Box<ProblemDetails>> {
+) -> Result<Drawing, ChartError> {
     let time = numbers(table, TIME.name)?;
     let line = |(name, values): (&str, Vec<f64>)| Line {
         name: line_name(name),

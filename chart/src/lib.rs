@@ -5,6 +5,7 @@
 //! on a page and written by [`picture`], which knows nothing of tables.
 
 mod cost;
+mod error;
 mod history;
 mod orbit;
 pub mod picture;
@@ -16,6 +17,7 @@ mod sweep;
 mod words;
 
 pub use cost::work_precision;
+pub use error::ChartError;
 pub use history::{Bit, history, shown_of_history};
 pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};

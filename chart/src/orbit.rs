@@ -1,10 +1,10 @@
 //! The picture of a node's path across its hole.
 
-use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::units;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::units;
 
+use crate::error::ChartError;
 use crate::picture::{Drawing, OrbitPlot};
 use crate::shown::{node_of, numbers, width};
 
@@ -22,12 +22,7 @@ pub struct Hole {
 ///
 /// # Errors
 /// When the table is not an orbit.
-pub fn orbit(
-    table: &Table,
-    hole: &Hole,
-    title: &str,
-    zoom: Option<bool>,
-) -> Result<Drawing, Box<ProblemDetails>> {
+pub fn orbit(table: &Table, hole: &Hole, title: &str, zoom: Option<bool>) -> Result<Drawing, ChartError> {
     let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {
         (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),

@@ -1,7 +1,7 @@
 //! Where nodes lie in the well, in words.
 
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{Name, Quantity};
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity};
 
 use crate::words::words;
 

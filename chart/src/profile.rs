@@ -1,9 +1,9 @@
 //! The picture of values along the string.
 
-use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
 
+use crate::error::ChartError;
 use crate::picture::{Drawing, Line, LinePlot, VerticalAxis};
 use crate::shown::{Shown, numbers, with_unit};
 use crate::words::words;
@@ -12,11 +12,7 @@ use crate::words::words;
 ///
 /// # Errors
 /// A problem that names the columns there are, where a field is none of them.
-pub fn profile(
-    table: &Table,
-    fields: Option<&[String]>,
-    title: &str,
-) -> Result<Drawing, Box<ProblemDetails>> {
+pub fn profile(table: &Table, fields: Option<&[String]>, title: &str) -> Result<Drawing, ChartError> {
     let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
         FRICTION_COEFFICIENT.name
     } else {
@@ -71,10 +67,14 @@ mod tests {
         let svg = profile(&table, None, "C_f").unwrap().svg();
         assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
         assert!(profile(&table, Some(&["torque".to_owned()]), "").unwrap().svg().contains("torque [kN m]"));
-        for fields in [&["torque", "friction_coefficient"][..], &["nothing"], &["regime"]] {
+        let refused = |fields: &[&str]| {
             let fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
-            let problem = profile(&table, Some(&fields), "").unwrap_err();
-            assert_eq!((problem.status, problem.errors[0].parameter.as_deref()), (400, Some("fields")));
-        }
+            profile(&table, Some(&fields), "").unwrap_err()
+        };
+        let name = "friction_coefficient".to_owned();
+        assert_eq!(refused(&["torque", "friction_coefficient"]), ChartError::OtherUnit { name });
+        assert_eq!(refused(&["regime"]), ChartError::Texts { name: "regime".to_owned() });
+        let columns = table.columns.keys().cloned().collect();
+        assert_eq!(refused(&["nothing"]), ChartError::NoSuchColumn { name: "nothing".to_owned(), columns });
     }
 }

@@ -1,12 +1,12 @@
 //! Columns of a table in the words and units in which engineers read them.
 
-use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity, Unit, units};
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{self, Name, Quantity, Unit, units};
 use indexmap::IndexMap;
 use serde_json::Value;
 
+use crate::error::ChartError;
 use crate::picture::axis::three_digits;
 use crate::place::{Place, at_place};
 use crate::words::words;
@@ -19,25 +19,22 @@ pub(crate) struct Shown<'t> {
 
 impl<'t> Shown<'t> {
     /// The numeric columns of these names; they must have one unit.
-    pub(crate) fn of(table: &'t Table, names: &[&str]) -> Result<Self, Box<ProblemDetails>> {
+    pub(crate) fn of(table: &'t Table, names: &[&str]) -> Result<Self, ChartError> {
         Self::within(table, names, names.first().and_then(|name| shown_in(name)))
     }
 
     /// The same in a unit of one's own.
-    pub(crate) fn within(
-        table: &'t Table,
-        names: &[&str],
-        unit: Option<Unit>,
-    ) -> Result<Self, Box<ProblemDetails>> {
+    pub(crate) fn within(table: &'t Table, names: &[&str], unit: Option<Unit>) -> Result<Self, ChartError> {
         let mut columns = Vec::new();
         for name in names {
             let Some((name, _)) = table.columns.get_key_value(*name) else {
-                return Err(ProblemDetails::no_such_column(table, name).into());
+                return Err(ChartError::no_such_column(table, name));
             };
-            if names.first().is_some_and(|first| quantity::unit(first) != quantity::unit(name)) {
-                let detail =
-                    format!("the columns of a picture must have one unit; {name} has another than the first");
-                return Err(ProblemDetails::invalid_parameter("fields", Some(name), detail).into());
+            if names
+                .first()
+                .is_some_and(|first| drillsweep_quantity::unit(first) != drillsweep_quantity::unit(name))
+            {
+                return Err(ChartError::OtherUnit { name: name.to_owned() });
             }
             columns.push((name.as_str(), numbers(table, name)?));
         }
@@ -77,7 +74,7 @@ pub(crate) fn amount(name: &str, value: f64) -> String {
 
 /// Words that columns have in common: their quantity, or else its dimension.
 fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
-    let quantities: Vec<&Quantity> = names.filter_map(quantity::of).collect();
+    let quantities: Vec<&Quantity> = names.filter_map(drillsweep_quantity::of).collect();
     match quantities.as_slice() {
         [] => String::new(),
         [first, rest @ ..] if rest.iter().all(|other| other == first) => first.label.to_owned(),
@@ -99,7 +96,7 @@ pub(crate) fn with_unit(name: &str) -> String {
 }
 
 /// The values of an axis, in the unit in which it is shown.
-pub(crate) fn axis(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
+pub(crate) fn axis(table: &Table, name: &str) -> Result<Vec<f64>, ChartError> {
     let values = numbers(table, name)?;
     let unit = shown_in(name);
     Ok(values.into_iter().map(|value| unit.map_or(value, |unit| unit.of(value))).collect())
@@ -115,13 +112,10 @@ pub(crate) fn node_of(table: &Table) -> String {
 }
 
 /// The values of a numeric column; missing ones are not finite.
-pub(crate) fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, Box<ProblemDetails>> {
+pub(crate) fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, ChartError> {
     match table.columns.get(name) {
-        Some(column) => column.numbers().ok_or_else(|| {
-            let detail = "is a column of texts, which a picture cannot show";
-            ProblemDetails::invalid_parameter("fields", Some(name), detail).into()
-        }),
-        None => Err(ProblemDetails::no_such_column(table, name).into()),
+        Some(column) => column.numbers().ok_or_else(|| ChartError::Texts { name: name.to_owned() }),
+        None => Err(ChartError::no_such_column(table, name)),
     }
 }
 

@@ -1,11 +1,11 @@
 //! The picture of a full spectrum.
 
-use drillsweep_api::problem::ProblemDetails;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::units;
 use drillsweep_table::Table;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::units;
 use serde_json::Value;
 
+use crate::error::ChartError;
 use crate::picture::axis::three_digits;
 use crate::picture::{Drawing, Label, Line, LinePlot, Shade, VerticalAxis};
 use crate::shown::{node_of, numbers, width, with_unit};
@@ -22,7 +22,7 @@ const MEAN_BINS: f64 = 2.5;
 ///
 /// # Errors
 /// When the table is not a spectrum.
-pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, Box<ProblemDetails>> {
+pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
     let (frequency, amplitude) = (numbers(table, FREQUENCY.name)?, numbers(table, AMPLITUDE.name)?);
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     let mean_width = MEAN_BINS * attribute("resolution").unwrap_or(0.0);

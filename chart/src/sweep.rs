@@ -1,11 +1,11 @@
 //! The picture of a sweep's table: lines over one parameter, or a map over two.
 
-use drillsweep_api::problem::ProblemDetails;
 use drillsweep_api::view::verification::{Findings, is_bias_column};
-use drillsweep_table::quantity::columns::*;
+use drillsweep_quantity::columns::*;
 use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 
+use crate::error::ChartError;
 use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
 use crate::place::{Place, at_place};
 use crate::shown::{Shown, amount, axis, numbers, with_unit};
@@ -41,14 +41,11 @@ pub fn sweep(
     findings: &Findings,
     title: &str,
     view: &SweepView,
-) -> Result<Drawing, Box<ProblemDetails>> {
+) -> Result<Drawing, ChartError> {
     let fields = fields.unwrap_or_default();
     let Some(first) = fields.first() else {
-        let detail = format!(
-            "a picture needs the column that it shows; there are {}",
-            numeric(table).filter(|name| !parameters.contains(*name)).collect::<Vec<_>>().join(", ")
-        );
-        return Err(ProblemDetails::invalid_parameter("fields", None, detail).into());
+        let columns = numeric(table).filter(|name| !parameters.contains(*name)).map(str::to_owned);
+        return Err(ChartError::NoField { columns: columns.collect() });
     };
     let Slice { rows, axes, notes } = Slice::of(table, parameters, &view.slice)?;
     let x = axes.first().copied().unwrap_or(ORDINAL.name);
@@ -142,13 +139,12 @@ impl<'t> Slice<'t> {
         table: &Table,
         parameters: &'t IndexSet<String>,
         held: &[(String, f64)],
-    ) -> Result<Self, Box<ProblemDetails>> {
+    ) -> Result<Self, ChartError> {
         let mut slice = Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new() };
         for (name, value) in held {
             if !parameters.contains(name) {
-                let names: Vec<&str> = parameters.iter().map(String::as_str).collect();
-                let detail = format!("the sweep has no such parameter; it has {}", names.join(", "));
-                return Err(ProblemDetails::invalid_parameter("slice", Some(name), detail).into());
+                let parameters = parameters.iter().cloned().collect();
+                return Err(ChartError::NoSuchParameter { name: name.clone(), parameters });
             }
             slice.hold(name, &numbers(table, name)?, *value)?;
         }
@@ -183,7 +179,7 @@ impl<'t> Slice<'t> {
     }
 
     /// Leaves the rows in which a parameter has this value.
-    fn hold(&mut self, name: &str, column: &[f64], value: f64) -> Result<(), Box<ProblemDetails>> {
+    fn hold(&mut self, name: &str, column: &[f64], value: f64) -> Result<(), ChartError> {
         /// The most values that a refusal names.
         const NAMED_VALUES: usize = 20;
         let values = self.values(column);
@@ -193,9 +189,7 @@ impl<'t> Slice<'t> {
             let mut nearest = values;
             nearest.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
             nearest.truncate(NAMED_VALUES);
-            let nearest: Vec<String> = nearest.iter().map(f64::to_string).collect();
-            let detail = format!("no point has this value of {name}; the nearest are {}", nearest.join(", "));
-            return Err(ProblemDetails::invalid_parameter("slice", Some(&value.to_string()), detail).into());
+            return Err(ChartError::NoSuchValue { parameter: name.to_owned(), value, nearest });
         }
         self.notes.push(format!(
             "slice at {} {} (one of {})",
@@ -302,9 +296,9 @@ mod tests {
             .unwrap()
             .svg();
         assert!(lines.contains(r#"class="series""#) && !lines.contains("mud density"));
-        let problem =
+        let error =
             sweep(&table(&[1200.0; 4]), &parameters, None, &none, "", &SweepView::default()).unwrap_err();
-        assert!(problem.detail.contains("orbit_radius_rms_49"), "{}", problem.detail);
+        assert!(error.to_string().contains("orbit_radius_rms_49"), "{error}");
     }
 
     #[test]
@@ -352,7 +346,7 @@ mod tests {
         (table, names.map(str::to_owned).into())
     }
 
-    fn drawn(field: &str, slice: &[(&str, f64)]) -> Result<String, Box<ProblemDetails>> {
+    fn drawn(field: &str, slice: &[(&str, f64)]) -> Result<String, ChartError> {
         let (table, parameters) = cube();
         let slice = slice.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         let view = SweepView { slice, ..SweepView::default() };
@@ -375,9 +369,8 @@ mod tests {
             (("mud.flow_rate", 0.5), "0.03, 0.02, 0.01"),
             (("mud.density", 1200.0), "operation.weight_on_bit"),
         ] {
-            let problem = drawn("orbit_radius_rms_49", &[slice]).unwrap_err();
-            assert_eq!(problem.errors[0].parameter.as_deref(), Some("slice"));
-            assert!(problem.detail.contains(words), "{}", problem.detail);
+            let error = drawn("orbit_radius_rms_49", &[slice]).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Names of columns in words.
 
-use drillsweep_table::quantity::Name;
+use drillsweep_quantity::Name;
 
 /// A column's name in words; of a part of a list with which part it is.
 pub(crate) fn words(name: &str) -> String {

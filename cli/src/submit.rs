@@ -10,8 +10,8 @@ use drillsweep_api::{
     AppendRequest, Axis, AxisName, Design, FieldProblem, ListedPoints, PlannedPoint, PlannedVerification,
     Scale, Sweep, SweepRequest,
 };
+use drillsweep_quantity::unit;
 use drillsweep_scenario::ScenarioRequest;
-use drillsweep_table::quantity::unit;
 use serde::Deserialize;
 use serde_json::Value;
 

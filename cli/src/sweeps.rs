@@ -8,7 +8,7 @@ use drillsweep_api::{
     FailureList, PointCounts, PointDetail, Queue, Sweep, SweepDeletion, SweepList, SweepPatch,
     SweepVerification, WorkerList,
 };
-use drillsweep_table::quantity::unit;
+use drillsweep_quantity::unit;
 use jiff::{SignedDuration, Timestamp};
 use serde::Serialize;
 use serde_json::{Value, json};

@@ -4,7 +4,9 @@
 //! refused. The types say what can be written down; what can be simulated is checked by `drillsweep_sim::validation`.
 
 mod accuracy;
+mod compose;
 mod effects;
+mod failure;
 mod format;
 mod mesh;
 mod nearest;
@@ -21,7 +23,9 @@ mod study;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
+pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
+pub use failure::{FailureClass, PointError};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use nearest::unknown_preset;
 pub use outputs::{OrbitOutputs, Outputs};

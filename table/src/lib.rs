@@ -1,7 +1,7 @@
 //! Tables of results and the vocabulary that they are written in.
 //!
 //! A [`Table`] has columns of one length. What a column's name stands for (symbol, unit, label, the unit in which the oil field
-//! reads it) says its [`quantity`]; nothing else in the workspace has units or labels of its own. A table is written as
+//! reads it) says its [`quantity`](drillsweep_quantity); nothing else in the workspace has units or labels of its own. A table is written as
 //! [`json`], [`csv`], [`npz`] and [`parquet`] by these modules, from a [`Source`]: a table in memory, or a part of a stored one, which
 //! is then read piece by piece.
 
@@ -10,11 +10,10 @@ mod error;
 pub mod json;
 pub mod npz;
 pub mod parquet;
-pub mod quantity;
 mod source;
 mod table;
+pub mod tables;
 
 pub use error::TableError;
-pub use quantity::{Quantity, Unit, Units};
 pub use source::{Sink, Source};
 pub use table::{Column, Table};

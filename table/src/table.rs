@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::quantity::unit;
+use drillsweep_quantity::unit;
 
 /// A table by columns, all of one length. A value that does not exist is `null`, never NaN.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

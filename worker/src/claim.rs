@@ -6,8 +6,7 @@ use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use drillsweep_api::{FailureClass, PointError, compose};
-use drillsweep_scenario::Scenario;
+use drillsweep_scenario::{FailureClass, PointError, Scenario, compose};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
 use drillsweep_store::{

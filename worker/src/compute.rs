@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use drillsweep_quantity::columns::*;
 use drillsweep_scenario::{Scenario, Starts};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::control::Control;
@@ -20,7 +21,6 @@ use drillsweep_study::mesh_estimate::MeshEstimate;
 use drillsweep_study::sensitivity::{Sensitivity, SensitivityError};
 use drillsweep_study::starts::StartsCompared;
 use drillsweep_study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_table::quantity::columns::*;
 use serde_json::{Map, Value, json};
 
 use crate::artifact::{ArtifactError, EncodedArtifact};
@@ -365,12 +365,12 @@ mod tests {
     use std::collections::BTreeSet;
     use std::os::unix::fs::FileExt;
 
+    use drillsweep_quantity::{Name, Place, columns};
     use drillsweep_scenario::{
         Effect, NodeChoice, OrbitOutputs, Outputs, Snapshots, Switch, TimeWindow, preset,
     };
     use drillsweep_study::footprint::Footprint;
-    use drillsweep_table::quantity::{Name, Place, columns, tables};
-    use drillsweep_table::{Column, Table, parquet};
+    use drillsweep_table::{Column, Table, parquet, tables};
 
     use super::*;
 

@@ -1,7 +1,6 @@
 //! Errors of a point's computation.
 
-use drillsweep_api::{FailureClass, PointError};
-use drillsweep_scenario::StartFriction;
+use drillsweep_scenario::{FailureClass, PointError, StartFriction};
 use drillsweep_sim::solve::model::ModelError;
 use drillsweep_sim::solve::modes::Stability;
 use drillsweep_sim::solve::run::TransientError;

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Place, Quantity, Variant};
 use drillsweep_scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
 use drillsweep_sim::math::signal::{FullSpectrum, Window, full_spectrum, sample_range};
 use drillsweep_sim::solve::model::Model;
@@ -14,10 +16,8 @@ use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_study::ensemble::spread;
 use drillsweep_study::errors::OtherMember;
 use drillsweep_study::summary::{StaticsSummary, TransientSummary};
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::tables::{self, Layout};
-use drillsweep_table::quantity::{self, Place, Variant};
-use drillsweep_table::{Column, Quantity, Table};
+use drillsweep_table::tables::{self, Layout};
+use drillsweep_table::{Column, Table};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -124,7 +124,7 @@ pub(crate) fn summary_row(
         // Forward and backward lines of one motion are often nearly alike: which is the higher says nothing.
         let value = |row: &Row| {
             let value = row.0.get(name)?.as_f64()?;
-            Some(if quantity::of(name) == Some(&LINE_FREQUENCY_HZ) { value.abs() } else { value })
+            Some(if drillsweep_quantity::of(name) == Some(&LINE_FREQUENCY_HZ) { value.abs() } else { value })
         };
         let values: Vec<f64> = members.iter().filter_map(value).collect();
         if let Some((mean, deviation)) = spread(&values) {

@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
+use drillsweep_quantity::columns;
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Promise};
 use drillsweep_study::cost::{CostReport, CostRow, Quantity, StatisticError};
-use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Serialize;
 

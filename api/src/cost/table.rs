@@ -1,9 +1,9 @@
 //! A cost study as a table.
 
+use drillsweep_quantity::columns::*;
 use drillsweep_study::cost::{
     CostErrors, CostReport, CostRow, LineErrors, MeshPart, Quantity, StatisticError, TotalChoice,
 };
-use drillsweep_table::quantity::columns::*;
 use drillsweep_table::{Column, Table};
 
 /// One row a line of the study: its `role` (`reference`, `method`, `start`, `mesh` or `effect`), what it was, what it took, its errors against

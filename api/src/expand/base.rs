@@ -1,10 +1,9 @@
 //! The scenario that the points of a request share.
 
-use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest, unknown_preset};
+use drillsweep_scenario::{PRESETS, Problems, Scenario, ScenarioRequest, json_number, unknown_preset};
 use drillsweep_sim::validation::validate;
 use indexmap::IndexSet;
 
-use super::expansion::{number, set_number};
 use super::interruption::Interruption;
 use super::layout::{Layout, axis_pointer};
 use super::problems::{Found, Written};
@@ -63,12 +62,12 @@ pub(super) fn set_fields(
 ) -> bool {
     let before = problems.len();
     for (axis, (name, value)) in layout.names.iter().zip(layout.values(0)).enumerate() {
-        if let Err(problem) = set_number(base, name.scenario_path(), value) {
+        if let Err(problem) = base.set_number(name.scenario_path(), value) {
             let pointer = match request.design {
                 Design::List => layout.pointer(0, axis),
                 _ => axis_pointer(name),
             };
-            let got = (!problem.got.is_empty()).then(|| number(value));
+            let got = (!problem.got.is_empty()).then(|| json_number(value));
             problems.push(pointer, got, format!("{}: {}", problem.path, problem.message));
         }
     }

@@ -1,10 +1,10 @@
 //! Expansion of a request, and keys of its points.
 
-use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Problem, Scenario};
+use drillsweep_scenario::{Accuracy, AccuracyPreset, Outputs, Scenario, json_number};
 use drillsweep_sim::PHYSICS_VERSION;
 use drillsweep_sim::key::CanonicalJson;
 use indexmap::IndexMap;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use crate::axis::AxisName;
 use crate::problem::FieldProblem;
@@ -36,7 +36,7 @@ impl Expansion {
         let mut scenario = self.base.clone();
         for (name, &value) in self.axes.iter().zip(&point.values) {
             // Each of these was made once, when the point was validated.
-            let _ = set_number(&mut scenario, name.scenario_path(), value);
+            let _ = scenario.set_number(name.scenario_path(), value);
         }
         scenario
     }
@@ -60,9 +60,10 @@ impl Expansion {
         Some(AccuracyPreset::ALL.into_iter().map(keys_at).collect())
     }
 
-    /// Changes of a point to the base, by path: with [`compose`] the point's scenario again.
+    /// Changes of a point to the base, by path: with [`compose`](drillsweep_scenario::compose) the point's scenario again.
     pub fn changes(&self, point: &SweepPoint) -> Map<String, Value> {
-        let change = |(name, value): (&AxisName, &f64)| (name.scenario_path().to_owned(), number(*value));
+        let change =
+            |(name, value): (&AxisName, &f64)| (name.scenario_path().to_owned(), json_number(*value));
         self.axes.iter().zip(&point.values).map(change).collect()
     }
 
@@ -137,52 +138,10 @@ impl Keys {
     }
 }
 
-/// The scenario of a stored point: its base with its changes, both as JSON text.
-///
-/// # Errors
-/// When either text is not what a release of the same physics version writes.
-pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
-    let mut scenario = Scenario::from_json(base)?;
-    let malformed = |error: serde_json::Error| Problem {
-        path: String::new(),
-        got: String::new(),
-        message: format!("the point's changes cannot be read: {error}"),
-    };
-    let changes: IndexMap<String, f64> = serde_json::from_str(changes).map_err(malformed)?;
-    for (path, value) in changes {
-        set_number(&mut scenario, &path, value)?;
-    }
-    Ok(scenario)
-}
-
-/// Sets a numeric field. Whole numbers are converted by the written form, which reports what is wrong with others.
-pub(super) fn set_number(scenario: &mut Scenario, path: &str, value: f64) -> Result<(), Problem> {
-    match scenario.number_mut(path) {
-        Some(number) => *number = value,
-        None => {
-            let refused = |problem: Problem| match problem.got.as_str() {
-                "" => problem,
-                _ => Problem { got: number(value).to_string(), ..problem },
-            };
-            *scenario = scenario.with(path, number(value)).map_err(refused)?;
-        }
-    }
-    Ok(())
-}
-
-/// A number as JSON, a whole one without its decimal point.
-pub(super) fn number(value: f64) -> Value {
-    const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
-    if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative()) {
-        json!(value as i64)
-    } else {
-        json!(value)
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::preset;
+    use drillsweep_scenario::{compose, preset};
+    use serde_json::json;
 
     use super::*;
     use crate::expand::tests::expand;

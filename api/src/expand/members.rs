@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::expansion::number;
+use drillsweep_scenario::json_number;
+
 use super::problems::Found;
 use crate::problem::ProblemDetails;
 use crate::request::{SweepPatch, SweepRequest};
@@ -36,7 +37,7 @@ pub(super) fn check_members(request: &SweepRequest, problems: &mut Found) {
     check_tags(&request.tags, problems);
     if let Some((verify, detail)) = request.verify.and_then(|verify| Some((verify, verify_problem(verify)?)))
     {
-        problems.push("/verify", Some(number(verify)), detail);
+        problems.push("/verify", Some(json_number(verify)), detail);
     }
 }
 

@@ -9,7 +9,7 @@ mod points;
 mod problems;
 mod references;
 
-pub use expansion::{Expansion, PointKey, PointKeys, SweepPoint, compose, key, key_text};
+pub use expansion::{Expansion, PointKey, PointKeys, SweepPoint, key, key_text};
 pub use interruption::{Interruption, UNINTERRUPTED};
 pub use members::check_patch;
 

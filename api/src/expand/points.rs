@@ -4,7 +4,7 @@ use drillsweep_scenario::{Problem, Problems, Scenario, Warning};
 use drillsweep_sim::solve::step::step_problem;
 use drillsweep_sim::validation::{validate, validate_changes};
 
-use super::expansion::{Expansion, Keys, SweepPoint, set_number};
+use super::expansion::{Expansion, Keys, SweepPoint};
 use super::interruption::Interruption;
 use super::layout::Layout;
 use super::problems::{Found, Written};
@@ -29,8 +29,7 @@ pub(super) fn points(
     for (index, ordinal) in (0..layout.total).zip(1..) {
         interruption()?;
         let values = layout.values(index);
-        let set =
-            paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let set = paths.iter().zip(&values).try_for_each(|(path, value)| scenario.set_number(path, *value));
         let checked = set.map_err(Problems::from).and_then(|()| match index {
             0 => validate(&scenario),
             _ => validate_changes(&scenario, paths.iter().copied()),

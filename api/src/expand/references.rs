@@ -6,7 +6,7 @@ use drillsweep_scenario::{Accuracy, AccuracyPreset, Problem, Problems};
 use drillsweep_sim::force::effect::active_effects;
 use drillsweep_sim::validation::{validate, validate_changes};
 
-use super::expansion::{Expansion, Keys, SweepPoint, set_number};
+use super::expansion::{Expansion, Keys, SweepPoint};
 use super::interruption::Interruption;
 use super::problems::Found;
 use crate::axis::AxisName;
@@ -70,8 +70,7 @@ pub(super) fn references(
     {
         interruption()?;
         let values: Vec<f64> = kept.iter().map(|axis| point.values[*axis]).collect();
-        let set =
-            paths.iter().zip(&values).try_for_each(|(path, value)| set_number(&mut scenario, path, *value));
+        let set = paths.iter().zip(&values).try_for_each(|(path, value)| scenario.set_number(path, *value));
         let checked = set.map_err(Problems::from).and_then(|()| match is_first {
             true => validate(&scenario),
             false => validate_changes(&scenario, paths.iter().copied()),
@@ -92,13 +91,13 @@ pub(super) fn references(
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::Scenario;
+    use drillsweep_scenario::{Scenario, compose};
     use serde_json::{Value, json};
 
     use super::*;
+    use crate::expand::expansion::key;
     use crate::expand::tests::expand;
     use crate::expand::tests::{pointers, problems, request};
-    use crate::expand::{compose, expansion::key};
 
     #[test]
     fn a_sample_is_verified_by_the_same_scenarios_at_the_reference() {

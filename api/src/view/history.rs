@@ -1,6 +1,6 @@
 //! Histories as recorded, over a window and thinned: by stride, or to the extremes of each column.
 
-use drillsweep_table::quantity::columns;
+use drillsweep_quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Deserialize;
 

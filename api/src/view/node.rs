@@ -1,6 +1,6 @@
 //! Which of the recorded nodes a client means.
 
-use drillsweep_table::quantity::{Name, columns};
+use drillsweep_quantity::{Name, columns};
 
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 

@@ -1,6 +1,6 @@
 //! The orbit of one node: its path in the plane across the hole.
 
-use drillsweep_table::quantity::columns;
+use drillsweep_quantity::columns;
 use drillsweep_table::{Column, Table};
 
 use super::window;

@@ -3,14 +3,15 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-use drillsweep_table::quantity::{Variant, columns};
+use drillsweep_quantity::{Variant, columns};
+use drillsweep_scenario::PointError;
 use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
-use crate::point::{PointError, PointState};
+use crate::point::PointState;
 
 /// Data of a point that the table needs.
 #[derive(Debug, Clone, PartialEq)]
@@ -308,7 +309,7 @@ impl<'de> Visitor<'de> for Field<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::FailureClass;
+    use drillsweep_scenario::FailureClass;
     use serde_json::{Map, json};
 
     fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {

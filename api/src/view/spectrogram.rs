@@ -1,7 +1,7 @@
 //! The spectrogram of one node's orbit: its full spectrum over windows that follow each other in time.
 
+use drillsweep_quantity::columns;
 use drillsweep_sim::math::signal::full_spectrum;
-use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde_json::json;
 

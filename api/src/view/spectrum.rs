@@ -1,7 +1,7 @@
 //! The full spectrum of one node's orbit.
 
+use drillsweep_quantity::columns;
 use drillsweep_sim::math::signal::{PeakSearch, full_spectrum};
-use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde_json::{Value, json};
 

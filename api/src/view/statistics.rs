@@ -1,7 +1,7 @@
 //! Where the orbits of a window lie and how large they are.
 
+use drillsweep_quantity::columns;
 use drillsweep_sim::math::signal::{OrbitStatistics, orbit_statistics};
-use drillsweep_table::quantity::columns;
 use drillsweep_table::{Column, Table};
 
 use super::orbit::Motion;

@@ -2,15 +2,15 @@
 
 use std::fmt;
 
-use drillsweep_scenario::Promise;
-use drillsweep_table::quantity::{Name, Variant, columns};
-use drillsweep_table::{Column, Quantity, Table};
+use drillsweep_quantity::{Name, Quantity, Variant, columns};
+use drillsweep_scenario::{PointError, Promise};
+use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Value, json};
 
-use crate::point::{PointError, PointState};
+use crate::point::PointState;
 
 /// Lengths below this \[m\] are what rounding and the iteration of the equilibrium leave of no motion at all: they have no bias.
 const LEAST_LENGTH: f64 = 1e-9;

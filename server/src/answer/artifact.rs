@@ -9,11 +9,11 @@ use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::view::window;
 use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::{Hole, Place};
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity};
 use drillsweep_store::{Artifact, BlobId, Store, WorkKey};
 use drillsweep_table::parquet::StoredTable;
-use drillsweep_table::quantity::columns::*;
-use drillsweep_table::quantity::{Name, tables};
-use drillsweep_table::{Column, Quantity, Table};
+use drillsweep_table::{Column, Table, tables};
 
 use crate::answer::error::{Error, Result};
 use crate::answer::records;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
+use drillsweep_chart::ChartError;
 use drillsweep_store::StoreError;
 use drillsweep_table::TableError;
 
@@ -132,6 +133,22 @@ impl From<StoreError> for Error {
     }
 }
 
+/// A picture that cannot be drawn, by the query parameter that chose it.
+impl From<ChartError> for Error {
+    fn from(error: ChartError) -> Self {
+        let detail = error.to_string();
+        let (parameter, got) = match error {
+            ChartError::NoField { .. } => ("fields", None),
+            ChartError::NoSuchColumn { name, .. }
+            | ChartError::OtherUnit { name }
+            | ChartError::Texts { name } => ("fields", Some(name)),
+            ChartError::NoSuchParameter { name, .. } => ("slice", Some(name)),
+            ChartError::NoSuchValue { value, .. } => ("slice", Some(value.to_string())),
+        };
+        Error::parameter(parameter, got.as_deref(), detail)
+    }
+}
+
 impl From<TableError> for Error {
     fn from(error: TableError) -> Self {
         Error::internal(&error)
@@ -156,7 +173,63 @@ impl IntoResponse for Error {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::{Value, json};
+
     use super::*;
+
+    #[test]
+    fn a_picture_that_cannot_be_drawn_names_parameter_and_value() {
+        let problem = |parameter: &str, got: Option<&str>, detail: &str| {
+            let mut error = json!({"parameter": parameter, "detail": detail});
+            if let Some(got) = got {
+                error["got"] = got.into();
+            }
+            json!({
+                "type": "urn:drillsweep:problem:invalid-parameter",
+                "title": "A parameter is not valid",
+                "status": 400,
+                "detail": format!("{parameter}: {detail}"),
+                "errors": [error],
+            })
+        };
+        let served = |error: ChartError| -> Value {
+            serde_json::to_value(Error::from(error).into_problem()).expect("a problem is JSON")
+        };
+        let names = || vec!["u_49".to_owned(), "time".to_owned()];
+        let name = || "x".to_owned();
+        for (error, expected) in [
+            (
+                ChartError::NoField { columns: names() },
+                problem("fields", None, "a picture needs the column that it shows; there are u_49, time"),
+            ),
+            (
+                ChartError::NoSuchColumn { name: name(), columns: names() },
+                problem("fields", Some("x"), "there is no such column; there are u_49, time"),
+            ),
+            (
+                ChartError::OtherUnit { name: name() },
+                problem(
+                    "fields",
+                    Some("x"),
+                    "the columns of a picture must have one unit; x has another than the first",
+                ),
+            ),
+            (
+                ChartError::Texts { name: name() },
+                problem("fields", Some("x"), "is a column of texts, which a picture cannot show"),
+            ),
+            (
+                ChartError::NoSuchParameter { name: name(), parameters: names() },
+                problem("slice", Some("x"), "the sweep has no such parameter; it has u_49, time"),
+            ),
+            (
+                ChartError::NoSuchValue { parameter: name(), value: 0.5, nearest: vec![0.25, 1.0] },
+                problem("slice", Some("0.5"), "no point has this value of x; the nearest are 0.25, 1"),
+            ),
+        ] {
+            assert_eq!(served(error), expected);
+        }
+    }
 
     #[test]
     fn lines_of_one_kind_are_sparse_and_count_those_left_out() {

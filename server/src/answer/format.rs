@@ -9,7 +9,7 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
-use drillsweep_chart::{Drawing, PNG_WIDTH};
+use drillsweep_chart::{ChartError, Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
 use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
 use headers::{ETag, HeaderMapExt as _, IfNoneMatch};
@@ -230,7 +230,7 @@ impl Answer {
         format: Format,
         name: &str,
         tag: Option<Tag>,
-        draw: impl FnOnce(&Table) -> Result<Drawing, Box<ProblemDetails>>,
+        draw: impl FnOnce(&Table) -> Result<Drawing, ChartError>,
     ) -> Result<Self> {
         let picture = match format {
             Format::Svg => draw(&table)?.svg().into_bytes(),

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use drillsweep_api::view::history;
 use drillsweep_api::view::snapshots::SnapshotTimes;
+use drillsweep_quantity::columns::TIME;
 use drillsweep_table::parquet::{Cut, StoredTable};
-use drillsweep_table::quantity::columns::TIME;
 use drillsweep_table::{Column, Table};
 
 use crate::answer::error::{Error, Result};

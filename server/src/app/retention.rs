@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use drillsweep_store::RetentionPolicy;
-use drillsweep_table::quantity::tables::{HISTORY, SNAPSHOTS};
+use drillsweep_table::tables::{HISTORY, SNAPSHOTS};
 
 const DAY: Duration = Duration::from_secs(86_400);
 

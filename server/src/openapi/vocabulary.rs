@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use drillsweep_table::quantity::tables::{self, Layout};
-use drillsweep_table::{Quantity, quantity};
+use drillsweep_quantity::Quantity;
+use drillsweep_table::tables::{self, Layout};
 use serde_json::{Map, Value, json};
 
 /// The member of a field's schema that names its unit.
@@ -32,7 +32,10 @@ pub(crate) fn describe(document: &mut Value) {
 fn columns(layout: &Layout) -> String {
     let mut text = "| column | unit | meaning |\n|---|---|---|\n".to_owned();
     let mut line = |name: String, quantity: &Quantity| {
-        let unit = quantity.unit().filter(|unit| *unit != quantity::units::RATIO.kept).unwrap_or_default();
+        let unit = quantity
+            .unit()
+            .filter(|unit| *unit != drillsweep_quantity::units::RATIO.kept)
+            .unwrap_or_default();
         let _ = writeln!(text, "| `{name}` | {unit} | {} |", quantity.meaning);
     };
     for quantity in layout.columns {
@@ -61,7 +64,7 @@ fn name_unit(schema: &mut Value, path: &str, waiting: &mut Vec<(String, String)>
         return;
     }
     if is_number(schema) {
-        if let Some(unit) = quantity::unit(path) {
+        if let Some(unit) = drillsweep_quantity::unit(path) {
             schema[UNIT] = json!(unit);
         }
         return;

@@ -4,9 +4,8 @@ use std::sync::LazyLock;
 
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use drillsweep_table::quantity;
 #[cfg(feature = "openapi")]
-use drillsweep_table::quantity::QuantityEntry;
+use drillsweep_quantity::QuantityEntry;
 
 use crate::answer::error::{Error, Result};
 #[cfg(feature = "openapi")]
@@ -34,7 +33,7 @@ use crate::openapi::answers::{Conditional, Problems};
     )
 )]
 pub(crate) async fn list() -> Result<Response> {
-    static TEXT: LazyLock<String> = LazyLock::new(|| quantity::json().to_string());
+    static TEXT: LazyLock<String> = LazyLock::new(|| drillsweep_quantity::json().to_string());
     static TAG: LazyLock<String> =
         LazyLock::new(|| format!("W/\"{}\"", blake3::hash(TEXT.as_bytes()).to_hex()));
     let tag = HeaderValue::from_str(&TAG).map_err(|error| Error::internal(&error))?;

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::history;
-use drillsweep_table::quantity::tables;
+use drillsweep_table::tables;
 use serde::Deserialize;
 
 use crate::answer::artifact;

@@ -5,7 +5,7 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::node::Choice;
 use drillsweep_api::view::statistics::StatisticsTable;
-use drillsweep_table::quantity::tables::STATISTICS;
+use drillsweep_table::tables::STATISTICS;
 use serde::Deserialize;
 
 use crate::answer::artifact::{Recording, mark_cut};

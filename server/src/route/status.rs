@@ -5,7 +5,7 @@ use std::time::Duration;
 use axum::extract::State;
 use drillsweep_api::{Collection, LIMITS, Limits, Queue, Retention, Worker, WorkerList};
 use drillsweep_store::WorkerRecord;
-use drillsweep_table::quantity::tables::HISTORY;
+use drillsweep_table::tables::HISTORY;
 
 use crate::answer::error::Result;
 use crate::answer::json::Json;

@@ -13,11 +13,12 @@ use drillsweep_api::{
     SweepState, check_patch, expand, expand_added, sample,
 };
 use drillsweep_chart as chart;
+use drillsweep_quantity::Name;
 use drillsweep_store::{
     Addition, AppendOutcome, CachePolicy, ChangeOutcome, DeleteOutcome, NewSweep, NewVerification,
     SubmitOutcome, SweepChanges, SweepFilter, WorkState,
 };
-use drillsweep_table::quantity::{Name, tables};
+use drillsweep_table::tables;
 use indexmap::{IndexMap, IndexSet};
 use jiff::Timestamp;
 use serde::Deserialize;

@@ -7,7 +7,7 @@ use axum::http::{Request, StatusCode, header};
 use drillsweep_api::ProblemKind;
 use drillsweep_server::{OPENAPI_JSON, openapi_of_annotations};
 use drillsweep_store::{NewToken, TokenScope, TokenSecret};
-use drillsweep_table::quantity::{self, tables};
+use drillsweep_table::tables;
 use serde_json::Value;
 
 use crate::bench::Bench;
@@ -100,8 +100,8 @@ fn every_number_of_a_scenario_is_in_the_vocabulary_with_the_unit_that_its_descri
     numeric_fields(&document, &document["components"]["schemas"]["Scenario"], "", &mut fields);
     assert!(fields.len() > 60, "{}", fields.len());
     for Field { path, unit, description } in fields {
-        assert!(quantity::of(&path).is_some(), "{path} is not in the vocabulary");
-        assert_eq!(unit.as_deref(), quantity::unit(&path), "{path}");
+        assert!(drillsweep_quantity::of(&path).is_some(), "{path} is not in the vocabulary");
+        assert_eq!(unit.as_deref(), drillsweep_quantity::unit(&path), "{path}");
         let named = description.split_once("\\[").and_then(|(_, rest)| rest.split_once("\\]"));
         if let Some((named, _)) = named {
             assert_eq!(unit.as_deref(), Some(named), "{path}: {description}");
@@ -132,7 +132,7 @@ async fn the_vocabulary_is_served_to_everybody() {
     bench.get("/v1/queue").await.problem(401, "unauthorized");
     let answer = bench.get("/v1/quantities").await;
     let served = answer.json();
-    assert_eq!(served, quantity::json());
+    assert_eq!(served, drillsweep_quantity::json());
     let density = &served["mud_density"];
     assert_eq!((&density["unit"], &density["field"]["unit"]), (&"kg/m3".into(), &"ppg".into()));
     // A pound in a gallon of 231 cubic inches.

@@ -1,7 +1,7 @@
 //! All quantities of the vocabulary.
 
-use super::definition::Quantity;
-use super::{columns, parameters};
+use crate::definition::Quantity;
+use crate::{columns, parameters};
 
 /// All quantities: those of columns, then those of fields of a scenario.
 pub fn all() -> impl Iterator<Item = &'static Quantity> {

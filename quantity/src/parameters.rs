@@ -1,7 +1,7 @@
 //! The numeric fields of a scenario, by their paths without indices. What each of them means is said where the field is defined.
 
-use super::definition::Quantity;
-use super::units::{self, Units};
+use crate::definition::Quantity;
+use crate::units::{self, Units};
 
 /// All of them.
 pub(super) static ALL: &[Quantity] = &[

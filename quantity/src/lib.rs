@@ -10,7 +10,6 @@ mod definition;
 mod export;
 mod name;
 mod parameters;
-pub mod tables;
 pub mod units;
 
 pub use all::all;

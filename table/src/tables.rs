@@ -1,7 +1,7 @@
 //! The columns of each table that a run leaves, and of the views that are cut from them.
 
-use super::columns::*;
-use super::definition::Quantity;
+use drillsweep_quantity::Quantity;
+use drillsweep_quantity::columns::*;
 
 /// One table: its name on the wire and its columns in order.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Quantities, each with its name, symbol, units, label and meaning.
 
-use super::units::Units;
+use crate::units::Units;
 
 /// One quantity.
 #[derive(Debug, PartialEq)]

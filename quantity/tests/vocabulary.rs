@@ -5,13 +5,13 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use drillsweep_table::quantity::{self, units};
+use drillsweep_quantity::units;
 
-/// `DRILLSWEEP_WRITE_QUANTITIES=1 cargo test -p drillsweep-table vocabulary` writes the file anew.
+/// `DRILLSWEEP_WRITE_QUANTITIES=1 cargo test -p drillsweep-quantity vocabulary` writes the file anew.
 #[test]
 fn the_python_client_has_this_vocabulary() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../api/python/src/drillsweep/quantities.json");
-    let text = format!("{:#}\n", quantity::json());
+    let text = format!("{:#}\n", drillsweep_quantity::json());
     if std::env::var_os("DRILLSWEEP_WRITE_QUANTITIES").is_some() {
         std::fs::write(&path, &text).unwrap();
     }
@@ -22,10 +22,10 @@ fn the_python_client_has_this_vocabulary() {
 #[test]
 fn every_name_is_there_once_and_every_unit_has_a_size() {
     let mut names = BTreeSet::new();
-    for quantity in quantity::all() {
+    for quantity in drillsweep_quantity::all() {
         assert!(names.insert(quantity.name), "{} is there twice", quantity.name);
         assert!(!quantity.label.is_empty(), "{}", quantity.name);
-        assert_eq!(quantity::of(quantity.name), Some(quantity));
+        assert_eq!(drillsweep_quantity::of(quantity.name), Some(quantity));
         for unit in quantity.units.iter().flat_map(|units| [units.shown, units.field]) {
             assert!(unit.size > 0.0 && unit.size.is_finite(), "{}: {unit:?}", quantity.name);
         }

@@ -4,9 +4,9 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::all::all;
-use super::definition::Quantity;
-use super::units::{self, Unit};
+use crate::all::all;
+use crate::definition::Quantity;
+use crate::units::{self, Unit};
 
 /// Meaning of a name: a column without its node and spectrum window, or a field of a scenario by its path without indices.
 #[derive(Debug, Clone, PartialEq, Serialize)]

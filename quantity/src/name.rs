@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::LazyLock;
 
-use super::all::all;
-use super::columns;
-use super::definition::Quantity;
-use super::units::{self, Units};
+use crate::all::all;
+use crate::columns;
+use crate::definition::Quantity;
+use crate::units::{self, Units};
 
 /// A column's name, or a scenario's path, taken apart.
 #[derive(Debug, Clone, Copy, PartialEq)]

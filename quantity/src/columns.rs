@@ -1,7 +1,7 @@
 //! The quantities in columns of tables.
 
-use super::definition::Quantity;
-use super::units;
+use crate::definition::Quantity;
+use crate::units;
 
 /// Defines the quantities with what each of them is, and the list of them all. `-` in place of units says that there are none.
 macro_rules! quantities {

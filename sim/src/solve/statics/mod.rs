@@ -24,7 +24,7 @@ use touch::{contact_along, contact_at};
 
 use crate::force::contact::Wall;
 use crate::force::mud::{ElementFlow, Pressures};
-use crate::math::dof::{DOFS, U, V};
+use crate::math::dof::DOFS;
 use crate::solve::model::{Model, NodalVector, element_values};
 
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.

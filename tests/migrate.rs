@@ -230,7 +230,7 @@ fn where_to_is_said_in_full() {
     }
     let itself = laptop.path().to_str().unwrap();
     let said = refused(laptop.path(), &["--to-data", itself]);
-    assert!(said.contains("cannot be carried over to itself"), "{said}");
+    assert!(said.contains("cannot be copied to itself"), "{said}");
 }
 
 /// The commands that the documents give for backups, in their order.

@@ -38,7 +38,7 @@ pub(crate) struct SoakArguments {
     /// Run the scenarios at this accuracy for 0.4 s, instead of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
     accuracy: Option<String>,
-    /// Run every scenario with a finer step as well, and report how many results that contradicts.
+    /// Run every scenario with a finer step as well, and report the number of results that it contradicts.
     #[arg(long)]
     finer: bool,
     /// Print the report as JSON.
@@ -70,21 +70,21 @@ impl SoakArguments {
     }
 }
 
-/// How one scene ended, as the report counts it.
+/// End of one scenario, as the report counts it.
 enum Ending {
-    /// With what a finer step says, and whether the scene's accuracy is a tolerance on statistics, where that was asked.
+    /// The end of a run; if compared with a finer step, its result, and true if the scenario's accuracy is a tolerance on statistics.
     Scene(SceneEnd, Option<(bool, Refined)>),
     Panicked(String),
     Hung,
 }
 
-/// Progress of a thread: the scene, since when, and the handle that stops it.
+/// Progress of a thread: the scenario, its start, and the handle that stops it.
 type Watch = Mutex<Option<(u64, Instant, Arc<Control>)>>;
 
-/// Runs the scenes and prints the report.
+/// Runs the scenarios and prints the report.
 ///
 /// # Errors
-/// When a scene broke the contract, panicked or hung.
+/// A scenario broke the contract, panicked or hung.
 pub(crate) fn soak(arguments: &SoakArguments) -> anyhow::Result<()> {
     if let Some(index) = arguments.show {
         print(arguments.scene(index).to_toml().trim_end());
@@ -105,7 +105,7 @@ pub(crate) fn soak(arguments: &SoakArguments) -> anyhow::Result<()> {
 }
 
 fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
-    // A scene that panics is counted; its message goes into the report.
+    // A scenario that panics is counted; its message goes into the report.
     std::panic::set_hook(Box::new(|_| ()));
     let bar = ProgressBar::new(arguments.scenes);
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos} of {len} scenarios, {elapsed}, {eta} left")?);
@@ -158,7 +158,7 @@ fn run_scenes(arguments: &SoakArguments) -> anyhow::Result<Report> {
                 if waited > arguments.limit {
                     control.cancel();
                 }
-                // A thread cannot be ended from outside: say which scene it is and leave.
+                // A thread cannot be ended from outside: report its scenario and leave.
                 if waited > 3.0 * arguments.limit {
                     bail_out(arguments.seed, *index);
                 }
@@ -184,57 +184,57 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
 }
 
-/// How many scenes failed for a cause, and a few of them with their reasons.
+/// Number of scenarios that failed for a cause, and a few of them with their reasons.
 type Failures = (u64, Vec<(u64, String)>);
 
 /// The counts of a soak.
 #[derive(Default)]
 struct Report {
     finite: u64,
-    /// The largest share of its bound that a finite scene's ledger left over, with the scene.
+    /// Largest share of its bound that a finite scenario's ledger left over, with the scenario.
     worst_ledger: (f64, u64),
-    /// Finite scenes whose ledger left over more than a tenth of its bound.
+    /// Finite scenarios whose ledger left over more than a tenth of its bound.
     loose_ledgers: u64,
-    /// Typed failures by cause, with a few scenes of each.
+    /// Typed failures by cause, with a few scenarios of each.
     failed: BTreeMap<&'static str, Failures>,
     ledgers_out_of_bound: u64,
     panics: u64,
     hangs: u64,
-    /// Verdicts of a finer step on the scenes that request a tolerance on statistics, and on those whose steps are given.
+    /// Verdicts of a finer step on the scenarios that request a tolerance on statistics, and on those whose steps are given.
     finer: [FinerCounts; 2],
-    /// Breaches of the contract, each with its scene.
+    /// Breaches of the contract, each with its scenario.
     faults: Vec<(u64, String)>,
 }
 
-/// Verdicts of a finer step on scenes with a result.
+/// Verdicts of a finer step on scenarios with a result.
 #[derive(Default)]
 struct FinerCounts {
     agree: u64,
     at_rest: u64,
     no_result: u64,
-    /// Scenes whose results a finer step contradicts.
+    /// Scenarios whose results a finer step contradicts.
     differ: Vec<Differing>,
-    /// Those whose results a start a micrometre apart contradicts as well.
+    /// Scenarios whose results a start a micrometre apart contradicts as well.
     sensitive: Vec<Differing>,
 }
 
-/// A scene whose result a finer step contradicts.
+/// A scenario whose result a finer step contradicts.
 struct Differing {
     index: u64,
     /// Largest difference.
     difference: Difference,
-    /// The error by steps that the result reports, relative; absent where it is unknown.
+    /// The error by steps that the result reports, relative; absent if it is unknown.
     told: Option<f64>,
 }
 
 impl Differing {
-    /// Whether the result itself reports an error as large, or an unknown one.
+    /// True if the result itself reports an error as large, or an unknown one.
     fn is_told(&self) -> bool {
         self.told.is_none_or(|told| told >= self.difference.relative)
     }
 }
 
-/// Number of differing scenes that are named, the worst first.
+/// Number of differing scenarios that are named, the worst first.
 const NAMED: usize = 5;
 
 impl FinerCounts {
@@ -288,7 +288,7 @@ impl FinerCounts {
             if !scenes.is_empty() {
                 writeln!(
                     text,
-                    "        ({told} of these results report it: an error as large, or an unknown one)"
+                    "        ({told} of these results report an error as large, or an unknown one)"
                 )?;
             }
             for Differing { index, difference, .. } in scenes.iter().take(NAMED) {
@@ -310,7 +310,7 @@ impl FinerCounts {
     }
 }
 
-/// Adds a scene: first those whose results do not report it, then the worst, and of equals the first.
+/// Adds a scenario: first those whose results do not report it, then the worst, and of equals the first.
 fn insert(scenes: &mut Vec<Differing>, scene: Differing) {
     let place = scenes.partition_point(|other| {
         let by_size = other.difference.share().total_cmp(&scene.difference.share()).reverse();

@@ -303,7 +303,7 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
 /// Runs the garbage collector two hours later, and finds nothing left that no result names.
 fn collect_orphans(data: &Path) {
     let blobs = data.join("blobs");
-    // What a killed worker uploaded is what the next one uploads, and is named by it: these two are not.
+    // The next worker uploads the same blobs as the killed one, and names them: these two are not named.
     let orphan = blobs.join("00/00").join("0".repeat(64));
     std::fs::create_dir_all(orphan.parent().unwrap()).unwrap();
     std::fs::write(&orphan, b"orphan").unwrap();

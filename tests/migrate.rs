@@ -139,7 +139,7 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     let known = submit(&remote_server, &swept());
     let known = get(&format!("{remote_server}/v1/sweeps/{known}"));
     assert_eq!((&known["counts"]["succeeded"], &known["state"]), (&json!(POINTS), &json!("completed")));
-    // What was queued goes on there.
+    // Queued points continue there.
     let mut worker = site.worker();
     assert_eq!(wait(&remote_server, &laptop.queued, completed)["counts"]["succeeded"], 2);
     let busy = site.command(&["migrate"]).arg("--to-data").arg(laptop.path().join("busy")).output().unwrap();
@@ -230,7 +230,7 @@ fn where_to_is_said_in_full() {
     }
     let itself = laptop.path().to_str().unwrap();
     let said = refused(laptop.path(), &["--to-data", itself]);
-    assert!(said.contains("cannot be carried over to itself"), "{said}");
+    assert!(said.contains("cannot be copied to itself"), "{said}");
 }
 
 /// The commands that the documents give for backups, in their order.

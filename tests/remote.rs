@@ -26,14 +26,14 @@ const FULL_SPEED: &str = "1000";
 
 const WORKER_KILLS: usize = 20;
 
-/// How long the object store is away.
+/// Duration of the object store's absence.
 const AWAY: Duration = Duration::from_secs(30);
 
 /// Resources that all processes share, wherever they run.
 pub(crate) struct Site {
     pub(crate) postgres: Postgres,
     pub(crate) objects: Seaweed,
-    /// By which they reach the object store.
+    /// Proxy to the object store.
     way: Proxy,
     scratch: tempfile::TempDir,
 }
@@ -318,7 +318,7 @@ fn a_worker_that_was_cut_off_beyond_its_lease_changes_nothing_when_it_is_back() 
     let before = [1, 2].map(results);
     assert_eq!(before.iter().map(|point| point["attempts"].as_u64().unwrap()).sum::<u64>(), 3, "{before:?}");
 
-    // What it had sent arrives now.
+    // Its earlier message arrives now.
     database.set(Behaviour::Pass);
     objects.set(Behaviour::Pass);
     // Its heartbeat learns of it, or its write does, whichever comes first.

@@ -71,7 +71,7 @@ fn command(data: &Path, collector: &str, arguments: &[&str]) -> Command {
         .arg(data)
         .env("OTEL_EXPORTER_OTLP_ENDPOINT", collector)
         .env("OTEL_BSP_SCHEDULE_DELAY", "50")
-        // What is traced does not depend on what is logged.
+        // Traces do not depend on the log's filter.
         .env("DRILLSWEEP_LOG", "off,drillsweep_server::serve=info")
         .env("NO_COLOR", "1");
     command

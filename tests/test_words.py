@@ -14,6 +14,9 @@ import pytest
 from service import REPOSITORY
 
 OPENING = re.compile(r"(What|Who|Whose|That of|Those of|So many|By whether)\b")
+CLEAN = ("api", "chart", "cli", "scenario", "store", "table", "tests", "worker")
+"""Folders whose doc comments in Rust open with no adverb or conjunction either."""
+OPENING_OF_CLEAN = re.compile(r"(Where|When|How|Which|Whether|Why)\b")
 RETIRED = {"falling friction": "velocity-weakening friction"}
 """Terms that no document and no doc comment has, with those in their place."""
 RETIRED_IN_OPENINGS = {"contact sweep": "contact iteration"}
@@ -95,6 +98,8 @@ def offences(path: str, source: str) -> list[str]:
         is_opening = is_heading or suffix != ".md"
         if is_opening:
             matches.append(OPENING.match(text))
+            if suffix == ".rs" and path.startswith(tuple(f"{folder}/" for folder in CLEAN)):
+                matches.append(OPENING_OF_CLEAN.match(text))
         if path != LISTS_RETIRED_TERMS:
             matches += [term(words).search(text) for words in RETIRED]
             matches += [term(words).search(text.split("\n")[0]) for words in RETIRED_IN_OPENINGS if is_opening]
@@ -136,6 +141,7 @@ OFFENDING = {
     "a.js": ["/** What it is. */", "/**\n * That of a.\n */"],
     "a.md": ["# What it is", "text\n## Who it is\n", "They feed on falling\nfriction."],
     "b.rs": ["/// The contact sweeps.", "/// Growth by\n/// falling friction."],
+    "store/src/a.rs": ["/// Where it is.", "/// # Errors\n/// When it fails.", "//! How it works."],
 }
 INNOCENT = {
     "a.rs": [
@@ -146,6 +152,8 @@ INNOCENT = {
     ],
     "a.py": ['A = "What it is."', "# What it is.", '"""Whole of `contact_sweeps`."""'],
     "a.js": ["// What it is.", "/* What it is. */"],
+    "b.rs": ["/// Where it is."],
+    "store/src/a.rs": ["/// Whenever.", "/// Place where it is.", "// When it fails."],
     "a.md": ["What it is.", "```sh\n# What it is\nfalling friction\n```", "Two contact sweeps."],
 }
 

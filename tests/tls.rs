@@ -133,7 +133,7 @@ fn ready_behind_tls(certified: &Certified) -> SocketAddr {
         for stream in listener.incoming() {
             let mut stream =
                 StreamOwned::new(ServerConnection::new(config.clone()).unwrap(), stream.unwrap());
-            // What a client without trust sends is no request.
+            // A client without trust sends no request.
             let Ok(true) = read_head(&mut stream) else { continue };
             let head = format!(
                 "HTTP/1.1 200 OK\r\ncontent-type: application/json\r\ncontent-length: {}\r\n",

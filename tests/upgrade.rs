@@ -79,7 +79,7 @@ fn each_worker_computes_points_of_its_version_and_a_sweep_says_which_one_is_miss
     let server = Logged::start(&mut service.command(&["serve", "--listen", "127.0.0.1:0"]));
     let address = server.address();
 
-    // What the earlier server had stored.
+    // A sweep that the earlier server has stored.
     let before = submit(&address, &request(4.0, 1, 3));
     service.postgres.query(&format!("UPDATE work SET physics_version = {EARLIER}"));
     assert_eq!(waiting_for(&address, &before), json!([EARLIER, []]), "nobody is there");

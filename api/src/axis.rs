@@ -21,16 +21,16 @@ pub enum Axis {
         to: f64,
         /// Number of values, 2 or more.
         count: u32,
-        /// How the values between are spaced.
+        /// Spacing of the values between.
         scale: Scale,
     },
-    /// `{"from", "to", "scale"}`: anything between, where the design draws the values (Latin hypercube, Sobol).
+    /// `{"from", "to", "scale"}`: anything between, if the design draws the values (Latin hypercube, Sobol).
     Interval {
         /// Lower or upper end.
         from: f64,
         /// The other end.
         to: f64,
-        /// How the values are spread.
+        /// Distribution of the values.
         scale: Scale,
     },
 }
@@ -48,7 +48,7 @@ pub enum Scale {
 }
 
 impl Axis {
-    /// The number of values, without forming them; none where the design draws them.
+    /// The number of values, without forming them; none if the design draws them.
     pub fn count(&self) -> Option<usize> {
         match self {
             Axis::Values { values } => Some(values.len()),
@@ -84,7 +84,7 @@ impl Axis {
     }
 
     /// Problems of the axis itself: member (a JSON Pointer below the axis, empty for the axis), the value
-    /// given, and what would be valid. Whether a value makes sense physically is the scenario's matter.
+    /// given, and the valid values. Whether a value makes sense physically is the scenario's matter.
     pub(crate) fn problems(&self) -> Vec<(&'static str, serde_json::Value, String)> {
         let mut problems = Vec::new();
         match self {
@@ -150,7 +150,7 @@ struct AxisFields {
     scale: Option<Scale>,
 }
 
-/// Takes what is given as a value: a `null` is neither one nor the absence of one.
+/// Takes the given value as it is: a `null` is neither one nor the absence of one.
 fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
@@ -187,7 +187,7 @@ impl TryFrom<AxisFields> for Axis {
 pub struct AxisName(String);
 
 impl AxisName {
-    /// The names of the parameters that have one besides their path, with that path.
+    /// Names of the parameters that have one in addition to their path, with that path.
     pub const NAMED: [(&str, &str); 2] = [("flow_rate", "mud.flow_rate"), ("mud_density", "mud.density")];
 
     /// The name as it is written.
@@ -243,7 +243,7 @@ mod schema {
         scale: Scale,
     }
 
-    /// Anything from `from` to `to`, where the design draws the values (Latin hypercube, Sobol).
+    /// Anything from `from` to `to`, if the design draws the values (Latin hypercube, Sobol).
     #[derive(ToSchema)]
     #[schema(as = AxisInterval)]
     #[serde(deny_unknown_fields)]
@@ -333,7 +333,7 @@ mod tests {
         assert_eq!(bits, LOG_BITS);
     }
 
-    /// Of 0.01 (6)^(i / 3), by `libm` 0.2.
+    /// Bits of 0.01 (6)^(i / 3), by `libm` 0.2.
     const LOG_BITS: [u64; 4] =
         [4576918229304087675, 4580894714928274227, 4584919399700666857, 4588807732320345784];
 

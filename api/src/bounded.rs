@@ -1,4 +1,4 @@
-//! Readers of lists and maps that stop at their largest size, before what is beyond it takes memory.
+//! Readers of lists and maps that stop at their largest size, before further entries take memory.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

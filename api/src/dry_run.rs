@@ -18,15 +18,15 @@ pub struct DryRun {
     pub total: u64,
     /// Points whose result is already there and would not be computed again.
     pub known: u64,
-    /// How many of the points have a result at each named accuracy, by its name, as if that had been asked for; absent where they
-    /// are not looked up: more than 5000 points, and an axis that is of the accuracy itself.
+    /// Number of points that have a result at each named accuracy, by its name, as if it had been requested; absent if they
+    /// are not looked up: more than 5000 points, or an axis of the accuracy itself.
     pub known_at: Option<IndexMap<String, u64>>,
-    /// The plan of the first point: effects and why, size, steps and processor time at each accuracy, and what its equilibrium shows.
+    /// The plan of the first point: effects with reasons, size, steps and processor time at each accuracy, and warnings from its equilibrium.
     pub plan: Option<Plan>,
     /// Processor time that the points and reference runs not yet known are expected to take together \[s\], from the plans of
     /// some of them; absent before a worker has measured its machine.
     pub cpu_time: Option<f64>,
-    /// The same shared out among the workers there are now \[s\]; absent where there are none.
+    /// The same shared out among the workers there are now \[s\]; absent if there are none.
     pub wall_time: Option<f64>,
     /// Tables of the points without a result, of reference runs too, before they are compressed \[bytes\]; stored they usually take half
     /// of that.
@@ -35,10 +35,10 @@ pub struct DryRun {
     pub memory_bytes: u64,
     /// The points, by ordinal.
     pub points: Vec<PlannedPoint>,
-    /// The reference runs that would verify some of them; absent where none is verified.
+    /// The reference runs that would verify some of them; absent if none is verified.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<PlannedVerification>,
-    /// Warnings about what can be simulated but is probably not meant.
+    /// Warnings about valid requests that are probably not meant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
 }
@@ -49,7 +49,7 @@ pub struct DryRun {
 pub struct PlannedVerification {
     /// Number of reference runs.
     pub total: u64,
-    /// Those whose result is already there and would not be computed again.
+    /// Number of reference runs that have a result and would not be computed again.
     pub known: u64,
     /// The points that they verify, each with the key of its reference run.
     pub points: Vec<PlannedPoint>,
@@ -69,7 +69,7 @@ pub struct PlannedPoint {
 
 impl DryRun {
     /// Preview of an expanded request: `known` of its points have a result, and `known_references` of the runs that verify
-    /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is what a worker measured last, and
+    /// some; `known_at` counts those of the same points at the named accuracies; `speed_json` is the speed that a worker measured last, and
     /// `workers` are there to share the rest.
     pub fn new(
         expansion: &Expansion,
@@ -135,7 +135,7 @@ fn table_bytes(expansion: &Expansion, known: u64, plans: &[Plan]) -> u64 {
     (unknown as f64 * of_plans as f64 / plans.len().max(1) as f64).round() as u64
 }
 
-/// The most bytes of memory that one of the plans tells.
+/// Largest memory of the plans \[bytes\].
 fn memory_bytes(plans: &[Plan]) -> u64 {
     plans.iter().map(|plan| plan.footprint.memory_bytes).max().unwrap_or(0)
 }
@@ -149,7 +149,7 @@ fn planned(expansion: &Expansion) -> Vec<PlannedPoint> {
     expansion.points.iter().map(planned).collect()
 }
 
-/// Mean of the points' expected processor times \[s\]; none where one is not known.
+/// Mean of the points' expected processor times \[s\]; none if one is not known.
 fn mean_cpu_time(plans: &[Plan]) -> Option<f64> {
     let times: Vec<f64> = plans.iter().map(Plan::cpu_time).collect::<Option<_>>()?;
     (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64)

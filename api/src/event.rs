@@ -9,14 +9,14 @@ use crate::point::PointState;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointEvent {
-    /// The points, by their numbers in the sweep; none where it is only the reference run of some.
+    /// The points, by their numbers in the sweep; none if it is only the reference run of some.
     pub ordinals: Vec<u32>,
     /// The points that the result verifies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verifies: Vec<u32>,
-    /// Where they stand now.
+    /// Their state.
     pub state: PointState,
-    /// When it happened.
+    /// Time of the event.
     pub at: Timestamp,
 }
 

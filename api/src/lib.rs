@@ -1,8 +1,8 @@
-//! The contract of the service: what is asked for, what is answered, and how it is derived from results.
+//! The contract of the service: requests, answers, and their derivation from results.
 //!
-//! A [`SweepRequest`] is [expanded](expand()) into the points to compute; what comes of them is shown as a
-//! [`Sweep`], as [points](point) and as [tables](drillsweep_table::Table); what goes wrong as [problems](problem). The
-//! [`view`]s cut orbits, spectra and the sweep's table from what workers stored.
+//! A [`SweepRequest`] is [expanded](expand()) into the points to compute; their results are shown as a
+//! [`Sweep`], as [points](point) and as [tables](drillsweep_table::Table); errors as [problems](problem). The
+//! [`view`]s cut orbits, spectra and the sweep's table from the stored tables.
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
 

@@ -15,7 +15,7 @@ use crate::service::LIMITS;
 pub struct ListedPoints {
     /// The parameters, in the order of the first point.
     names: Vec<AxisName>,
-    /// Points by parameters, point after point; NaN of what a point does not name.
+    /// Points by parameters, point after point; NaN for parameters that a point does not name.
     values: Vec<f64>,
     number: usize,
     /// Indices of points with other parameters than the first, in ascending order.
@@ -169,7 +169,7 @@ mod tests {
         let most = LIMITS.points_per_sweep;
         let list = |number: usize| format!("[{}{{}}]", "{},".repeat(number - 1));
         assert_eq!(serde_json::from_str::<ListedPoints>(&list(most)).unwrap().len(), most);
-        // What follows is not looked at.
+        // The rest is not read.
         let beyond = list(most + 1).replace(']', " then anything");
         let refused = serde_json::from_str::<ListedPoints>(&beyond).unwrap_err().to_string();
         assert!(refused.starts_with("there may be at most 100000 points"), "{refused}");

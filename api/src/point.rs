@@ -17,7 +17,7 @@ pub enum PointState {
     Running,
     /// Its result is there.
     Succeeded,
-    /// It ended without a result; `error` says why. Final unless the sweep is retried.
+    /// It ended without a result; `error` has the reason. Final unless the sweep is retried.
     Failed,
     /// It was cancelled before it had a result.
     Cancelled,
@@ -54,12 +54,12 @@ pub struct PointRow {
     pub parameters: IndexMap<String, f64>,
     /// Simulated time over duration, 0 to 1.
     pub progress: f64,
-    /// How often a worker has started it.
+    /// Number of attempts.
     pub attempts: u64,
-    /// Why it failed; of a point that has succeeded, why its last recomputation failed.
+    /// Reason of its failure; of a point that has succeeded, reason of the failure of its last recomputation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<PointError>,
-    /// Where to read more.
+    /// Links to more of it.
     pub links: PointLinks,
 }
 
@@ -74,7 +74,7 @@ pub struct PointList {
     pub next: Option<String>,
 }
 
-/// A page of points, with the fields of each that were asked for.
+/// A page of points, with the requested fields of each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SelectedPointList {
@@ -102,7 +102,7 @@ pub struct Failure {
     pub sweep_name: Option<String>,
     /// Owner of the sweep.
     pub owner: String,
-    /// When it failed.
+    /// Time of the failure.
     pub at: Timestamp,
     /// The point as in the list of its sweep.
     #[serde(flatten)]
@@ -142,20 +142,20 @@ pub struct ArtifactEntry {
     pub rows: u64,
     /// BLAKE3 hash of its content, its `ETag`.
     pub hash: String,
-    /// When it was deleted, having expired.
+    /// Time of its deletion, once expired.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expired: Option<Timestamp>,
-    /// Where it is.
+    /// Link to the file.
     pub link: String,
 }
 
-/// Contents of an archive of a sweep, and what it lacks: `manifest.json` in it.
+/// Contents of an archive of a sweep, with missing files: `manifest.json` in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ExportManifest {
     /// Number of files of points in the archive.
     pub files: u64,
-    /// Those that were asked for, belong to results, and are not in it.
+    /// Requested files that belong to results and are not in the export.
     pub missing: Vec<MissingFile>,
 }
 
@@ -168,7 +168,7 @@ pub struct MissingFile {
     pub point: u32,
     /// Name of the table.
     pub table: String,
-    /// Why it cannot be had, and what becomes of it.
+    /// Reason of its absence, and the consequence.
     pub reason: String,
 }
 
@@ -186,8 +186,8 @@ pub struct PointDetail {
     /// The scalar results; the same fields make up the point's row in the sweep's table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub summary: Option<Map<String, Value>>,
-    /// Which code computed it, where, and at what cost. Where it was recomputed (`cache=refresh`) and differs,
-    /// which equal keys rule out, `disagreement` says what `differs` and has the provenance of the `earlier` result.
+    /// Code, machine, times and cost of the result. If it was recomputed (`cache=refresh`) and differs,
+    /// which equal keys rule out, `disagreement` has the members `differs` with the names that differ, and `earlier` with the provenance of the earlier result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub provenance: Option<Map<String, Value>>,
     /// Names of the tables that the run produced.
@@ -195,7 +195,7 @@ pub struct PointDetail {
     pub tables: Vec<String>,
 }
 
-/// Where to read more about a point.
+/// Links to more of a point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PointLinks {

@@ -15,7 +15,7 @@ pub const PROBLEM_MEDIA_TYPE: &str = "application/problem+json";
 pub enum ProblemKind {
     /// The body is not JSON, or not of the documented form.
     MalformedBody,
-    /// The body is well-formed but what it asks for cannot be simulated.
+    /// The body is well-formed but its scenario cannot be simulated.
     InvalidRequest,
     /// The request takes too long to prepare.
     TooMuchWork,
@@ -43,7 +43,7 @@ pub enum ProblemKind {
     HeaderTooLarge,
     /// The body did not come in time.
     RequestTimeout,
-    /// None of the bytes asked for exist.
+    /// None of the requested bytes exist.
     RangeNotSatisfiable,
     /// No such route.
     NoSuchRoute,
@@ -67,7 +67,7 @@ pub enum ProblemKind {
     Recomputing,
     /// The sweep's state does not allow the operation.
     Conflict,
-    /// The sweep is not any more what `If-Match` says.
+    /// The `ETag` of the sweep is no longer that of `If-Match`.
     PreconditionFailed,
     /// The idempotency key was used with another request.
     IdempotencyKeyReused,
@@ -219,7 +219,7 @@ pub struct FieldProblem {
     /// Value that was given; absent if none was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub got: Option<Value>,
-    /// Explanation of the problem, and what would be valid.
+    /// Explanation of the problem, with the valid values.
     pub detail: String,
 }
 
@@ -237,12 +237,12 @@ impl ProblemDetails {
         }
     }
 
-    /// A body that is not JSON, or not of the documented form at the place that the JSON Pointer tells.
+    /// A body that is not JSON, or not of the documented form at the place of the JSON Pointer.
     pub fn malformed_body(pointer: String, error: &serde_json::Error) -> Self {
         let (message, position) =
             (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
         let (got, detail) = if error.is_data() {
-            // The pointer tells the place.
+            // The pointer has the place.
             let message = message.strip_suffix(&position).unwrap_or(&message);
             let problem = Problem::from_serde(String::new(), message);
             match serde_json::from_str(&problem.got) {
@@ -253,7 +253,7 @@ impl ProblemDetails {
             (None, format!("not JSON: {message}"))
         };
         let error = FieldProblem { pointer: Some(pointer), parameter: None, got, detail };
-        // That of the whole body needs no place.
+        // A problem of the whole body needs no place.
         let text = error.to_string();
         let text = text.strip_prefix(": ").unwrap_or(&text);
         let problem = ProblemDetails::new(ProblemKind::MalformedBody, text);
@@ -272,7 +272,7 @@ impl ProblemDetails {
         ProblemDetails { errors, ..ProblemDetails::new(ProblemKind::InvalidRequest, detail) }
     }
 
-    /// Shortens texts that repeat what was sent, so that no answer is as long as a hostile request.
+    /// Shortens texts that repeat the request, so that no answer is as long as a hostile request.
     pub fn shorten(&mut self) {
         shorten(&mut self.detail, LONGEST_DETAIL);
         for error in &mut self.errors {
@@ -310,7 +310,7 @@ impl ProblemDetails {
         Self::invalid_parameter(name, got, detail.replacen("no field", "no parameter", 1))
     }
 
-    /// The problem that a table has no column of this name, which `fields` asks for; it names those that there are.
+    /// Problem of a name in `fields` that is no column of a table, with the names of the columns.
     pub fn no_such_column(table: &Table, name: &str) -> Self {
         let names: Vec<&str> = table.columns.keys().map(String::as_str).collect();
         let detail = format!("there is no such column; there are {}", names.join(", "));

@@ -50,7 +50,7 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
     /// Changes to the scenario, by the path of the field, such as `operation.rotation_speed_rpm` or
-    /// `string.sections[1].count`. An object changes the fields it names; `null` removes what is optional. An
+    /// `string.sections[1].count`. An object changes the fields it names; `null` removes an optional field. An
     /// outer path is applied before those inside it. At most 200.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
     #[cfg_attr(feature = "openapi", schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120})))]
@@ -61,7 +61,7 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(example = "full"))]
     pub outputs: Option<Outputs>,
-    /// How the points are made from the axes; absent means `grid`.
+    /// Design that makes the points from the axes; absent means `grid`.
     #[serde(default)]
     pub design: Design,
     /// The swept parameters, by name: `flow_rate`, `mud_density`, or the path of any numeric field of the scenario, such as
@@ -93,11 +93,11 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
+    /// Points at the start of the Sobol sequence to skip, so that a sweep continues another one of the same seed; 0
     /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
-    /// How many of the points are run a second time, at the accuracy `reference`, to see how far theirs can be trusted: a part of
+    /// Number of points that are run a second time, at the accuracy `reference`, to measure the bias of their own: a part of
     /// them below 1, usual 0.02 to 0.1 (rounded, but one at least), or a number of them, 1 or more; absent means none. A reference
     /// run takes three to four times as long as one at `standard`. They are spread over the order of the points, the same for the
     /// same request; of points that are added later as many are verified as make up that part, or that number, of the whole sweep.
@@ -182,7 +182,7 @@ impl From<RunRequest> for SweepRequest {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AppendRequest {
-    /// How the points are made from the axes; absent means `grid`.
+    /// Design that makes the points from the axes; absent means `grid`.
     #[serde(default)]
     pub design: Design,
     /// The sweep's parameters with new values.
@@ -209,7 +209,7 @@ pub struct AppendRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
     pub seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
+    /// Points at the start of the Sobol sequence to skip, so that a sweep continues another one of the same seed; 0
     /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
@@ -222,7 +222,7 @@ impl AppendRequest {
     /// The parameters are not those of the sweep.
     pub fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
         let AppendRequest { design, axes, points, samples, seed, skip } = self;
-        // Which of the points are verified is found once it is known which of them the sweep has not.
+        // The sample is drawn from the points that the sweep lacks, once they are known.
         let request =
             SweepRequest { design, axes, points, samples, seed, skip, verify: None, ..original.clone() };
         let (added, own): (BTreeSet<_>, BTreeSet<_>) = (request.parameters(), original.parameters());
@@ -288,29 +288,29 @@ pub struct SweepPatch {
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "bounded::new_tags")]
     #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Option<Vec<Tag>>))]
     pub tags: Option<BTreeSet<String>>,
-    /// Whether the sweep, and all that belongs to it, is kept whatever its age.
+    /// True to keep the sweep, and all that belongs to it, whatever its age.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pinned: Option<bool>,
-    /// When the sweep is to be deleted, once all its points are final and unless it is pinned; `null` means never.
+    /// Time from which the sweep may be deleted, once all its points are final and unless it is pinned; `null` means never.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "time")]
     #[cfg_attr(feature = "openapi", schema(value_type = Option<Timestamp>))]
     pub expires: Option<Option<Timestamp>>,
 }
 
-/// A member that is there, be it `null`.
+/// A member that is present, also as `null`.
 fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<Option<T>>, D::Error> {
     Option::deserialize(deserializer).map(Some)
 }
 
-/// A time that is there, be it `null`.
+/// A time that is present, also as `null`.
 fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<Timestamp>>, D::Error> {
     let expected = |_| D::Error::custom("must be a time such as 2026-12-31T00:00:00Z (RFC 3339), or null");
     given(deserializer).map_err(expected)
 }
 
-/// How points are made from the axes.
+/// Design that makes points from the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -331,7 +331,7 @@ pub enum Design {
 }
 
 impl Design {
-    /// Whether the design draws values from the axes' intervals, rather than taking the axes' own.
+    /// True if the design draws values from the axes' intervals, rather than taking the axes' own.
     pub(crate) fn is_drawn(self) -> bool {
         matches!(self, Design::LatinHypercube | Design::Sobol)
     }

@@ -16,10 +16,10 @@ pub use drillsweep_study::plan::Plan;
 /// Up to this frequency modes are searched \[Hz\]: there are about two for each hertz and 200 m, and each takes its time.
 pub const HIGHEST_MODE_HZ: f64 = 50.0;
 
-/// The plan of a scenario with what its equilibrium shows; with processor times where `speed_json` is what a worker has measured.
+/// Plan of a scenario with warnings from its equilibrium; with processor times if `speed_json` is the speed that a worker has measured.
 ///
 /// # Errors
-/// When the scenario has no model.
+/// The scenario has no model.
 pub fn plan(scenario: &Scenario, speed_json: Option<&str>) -> Result<Plan, Box<ProblemDetails>> {
     // A speed that another version has written is as good as none.
     let speed: Option<MachineSpeed> = speed_json.and_then(|json| serde_json::from_str(json).ok());
@@ -30,7 +30,7 @@ pub fn plan(scenario: &Scenario, speed_json: Option<&str>) -> Result<Plan, Box<P
 /// The modes of a scenario about its equilibrium up to a frequency \[Hz\], its contacts closed and sliding.
 ///
 /// # Errors
-/// When the scenario has no model or no equilibrium, or its eigenvalues are not found.
+/// The scenario has no model or no equilibrium, or its eigenvalues are not found.
 pub fn modes_up_to(scenario: &Scenario, to_hz: f64) -> Result<Modes, Box<ProblemDetails>> {
     let model = Model::new(scenario).map_err(|error| none("modes", &error))?;
     let equilibrium = Equilibrium::find(&model).map_err(|error| none("modes", &error))?;
@@ -39,5 +39,5 @@ pub fn modes_up_to(scenario: &Scenario, to_hz: f64) -> Result<Modes, Box<Problem
 }
 
 fn none(what: &str, error: &impl Display) -> Box<ProblemDetails> {
-    ProblemDetails::new(ProblemKind::NoResult, format!("the scene has no {what}: {error}")).into()
+    ProblemDetails::new(ProblemKind::NoResult, format!("the scenario has no {what}: {error}")).into()
 }

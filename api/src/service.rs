@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::design::SOBOL_AXES;
 use crate::problem::{FieldProblem, ProblemDetails};
 
-/// The bounds of what the service accepts.
+/// Bounds of requests to the service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Limits {
@@ -49,7 +49,7 @@ pub struct Limits {
     pub open_points_per_owner: u64,
 }
 
-/// The limits in force, but for those of an owner: these are the defaults of what an operator sets.
+/// The limits in force, except those of an owner: these are the defaults of an operator's settings.
 pub const LIMITS: Limits = Limits {
     points_per_sweep: 100_000,
     axes_per_sweep: SOBOL_AXES,
@@ -129,7 +129,7 @@ impl ScenarioFile {
     /// Request of the file. It is not validated yet.
     ///
     /// # Errors
-    /// The first place where the text is not of its format, or no scenario.
+    /// The first place at which the text is not of its format, or no scenario.
     pub fn read(&self) -> Result<ScenarioRequest, Box<ProblemDetails>> {
         let refused = |detail: String| {
             let error =
@@ -170,7 +170,7 @@ pub struct Worker {
     pub version: String,
     /// Version of its numbers; it computes only points submitted under the same.
     pub physics_version: i64,
-    /// When it started.
+    /// Time of its start.
     pub started: Timestamp,
     /// Its last heartbeat.
     pub seen: Timestamp,
@@ -190,11 +190,11 @@ pub struct Queue {
     pub running: u64,
 }
 
-/// How long data are kept, and when it was last seen to that.
+/// Ages at which data are deleted, and the last collection.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Retention {
-    /// How often the service deletes what need not be kept; absent where it does not.
+    /// Interval at which the service deletes expired data; absent if it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval_seconds: Option<f64>,
     /// Age at which recordings (histories and snapshots) expire.
@@ -203,18 +203,18 @@ pub struct Retention {
     pub tables_days: f64,
     /// Age at which events are forgotten.
     pub events_days: f64,
-    /// The last collection, by the service or by `drillsweep gc`; absent where there was none yet.
+    /// The last collection, by the service or by `drillsweep gc`; absent if there was none yet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last: Option<Collection>,
 }
 
-/// A collection of what need not be kept any more.
+/// A garbage collection.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Collection {
-    /// When the last one began.
+    /// Start of the last collection.
     pub started: Timestamp,
-    /// When one ended last; before `started` while one is under way, or where the last one failed.
+    /// End of the last completed collection; before `started` while one is under way, or if the last one failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<Timestamp>,
     /// Deletions of the one that ended last.
@@ -227,7 +227,7 @@ pub struct Collection {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(default)]
 pub struct Collected {
-    /// Sweeps whose time had come.
+    /// Expired sweeps.
     pub sweeps: u64,
     /// Results that belonged to no sweep any more.
     pub results: u64,
@@ -268,7 +268,7 @@ pub struct Login {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Session {
-    /// Whether the service asks for tokens.
+    /// True if requests need a token.
     pub tokens_required: bool,
     /// Owner of the sweeps that are submitted in the session; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -279,7 +279,7 @@ pub struct Session {
     /// Permissions of the token: `read`, `submit` or `admin`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scope: Option<String>,
-    /// When the session ends.
+    /// End of the session.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expires: Option<Timestamp>,
 }

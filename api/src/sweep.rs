@@ -26,33 +26,33 @@ pub struct Sweep {
     pub state: SweepState,
     /// Points by state.
     pub counts: PointCounts,
-    /// How far a sample of the points is verified by the reference, and what that shows; absent where none is.
+    /// Progress and results of the verification of a sample of the points by the reference; absent if none is verified.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verification: Option<SweepVerification>,
     /// Fraction of the work that is done, reference runs included, running points counted by their simulated time; 1 when every point
     /// and every reference run is final.
     pub progress: f64,
-    /// Why its queued points do not begin, where that is for want of a worker; absent while there is one that could compute them.
+    /// Reason why its queued points do not begin, for lack of a worker; absent while there is one that could compute them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waiting_for: Option<WaitingFor>,
     /// Higher goes first among the sweeps of one owner.
     pub priority: i64,
-    /// When it was submitted.
+    /// Time of its submission.
     pub created: Timestamp,
-    /// When its last point, or the last reference run that verifies one, became final.
+    /// Time at which its last point, or the last reference run that verifies one, became final.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished: Option<Timestamp>,
-    /// Whether it, and all that belongs to it, is kept whatever its age.
+    /// True if it, and all that belongs to it, is kept whatever its age.
     #[serde(default)]
     pub pinned: bool,
-    /// When it is to be deleted, once all its points are final and unless it is pinned.
+    /// Time from which it may be deleted, once all its points are final and unless it is pinned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expires: Option<Timestamp>,
-    /// Raised by every change that somebody asks for: what `PATCH` sets, pause, cancellation, retry, further points. The `ETag` of
+    /// Raised by every requested change: what `PATCH` sets, pause, cancellation, retry, further points. The `ETag` of
     /// the sweep begins with it.
     #[serde(default)]
     pub revision: u64,
-    /// Warnings about what can be simulated but is probably not meant; in the answer to a submission only.
+    /// Warnings about valid requests that are probably not meant; in the answer to a submission only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
     /// Request of the sweep; left out of lists.
@@ -61,7 +61,7 @@ pub struct Sweep {
     /// Later requests, the points of each after those before: the latest hundred, all in an export; left out of lists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub appended: Vec<AppendRequest>,
-    /// Where to read more.
+    /// Links to more of it.
     pub links: SweepLinks,
 }
 
@@ -95,7 +95,7 @@ impl WaitingFor {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SweepDeletion {
-    /// Whether this only shows what would be deleted.
+    /// True if nothing was deleted, and this only shows what would be.
     pub dry_run: bool,
     /// Points of the sweep.
     pub points: u64,
@@ -150,17 +150,17 @@ pub struct PointCounts {
     pub cancelled: u64,
 }
 
-/// How far a sample of a sweep's points is verified, and what that shows.
+/// Progress and results of the verification of a sample of a sweep's points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SweepVerification {
     /// The reference runs by state; `total` is how many were wanted.
     pub counts: PointCounts,
     /// The bias of orbit size that is farthest from zero, once a point is verified; shown with the sweep itself, and left out of lists,
-    /// event streams and answers to what is done with it.
+    /// event streams and answers to changes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst: Option<WorstBias>,
-    /// Where biases exceed what the accuracy promises, in words; likewise.
+    /// Biases beyond the accuracy's promise, in words; likewise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -177,11 +177,11 @@ pub struct ColumnList {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ColumnEntry {
-    /// Its name; `GET /v1/quantities` says what it stands for.
+    /// Its name; `GET /v1/quantities` has its meaning.
     pub name: String,
     /// Kind of its values.
     pub kind: ColumnKind,
-    /// The unit of its values, where they have one; `1` of ratios.
+    /// The unit of its values, if they have one; `1` of ratios.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }
@@ -215,7 +215,7 @@ impl ColumnList {
     }
 }
 
-/// Where to read more about a sweep.
+/// Links to more of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SweepLinks {

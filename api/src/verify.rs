@@ -1,4 +1,4 @@
-//! Verifying a sample of a sweep's points: how many, which of them, and what their accuracy promises.
+//! Sample of a sweep's points that is verified, and the promise of their accuracy.
 
 use drillsweep_scenario::{Accuracy, Promise};
 use serde::Deserialize;
@@ -17,14 +17,14 @@ pub(crate) fn verify_problem(verify: f64) -> Option<&'static str> {
     )
 }
 
-/// How many of `total` points are verified: a part below 1 of them, rounded but at least one, or so many, at most all.
+/// Number of verified points among `total`: a part of them below 1, rounded but at least one, or a number, at most all.
 fn wanted(verify: f64, total: usize) -> usize {
     let number = if verify < 1.0 { (verify * total as f64).round().max(1.0) } else { verify };
     (number as usize).min(total)
 }
 
-/// Which of `added` points are verified where a sweep has `total` points with them and `verified` of the others are verified
-/// already: indices into those added, in order.
+/// Indices of those among `added` points that are verified, in order, if a sweep has `total` points with them and `verified`
+/// of the others are verified already.
 ///
 /// They are divided into as many equal parts as are to be verified, and of each part one is taken, by multiples of the golden ratio.
 /// So the sample is spread over the order of the points, over the first axis of a grid, as evenly as can be; and within the parts it

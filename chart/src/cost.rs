@@ -50,8 +50,8 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
         if report.scenario.is_empty() { String::new() } else { format!(" of {}", report.scenario) };
     WorkPrecisionChart {
         title: match report.settles {
-            true => format!("What accuracy costs: runs{of_scenario} until they have settled"),
-            false => format!("What accuracy costs: runs{of_scenario} over {} s", report.duration),
+            true => format!("Cost of accuracy: runs{of_scenario} until they have settled"),
+            false => format!("Cost of accuracy: runs{of_scenario} over {} s", report.duration),
         },
         x_label: match report.settles {
             true => "CPU seconds of the run".to_owned(),
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(points(2), [(0.4, 0.4, "draft")]);
         assert_eq!(points(3), [(0.8, 4e-3, "0.5 ms")]);
         assert_eq!(chart.wanted.map(|wanted| wanted.y), Some(0.02));
-        assert_eq!(chart.title, "What accuracy costs: runs of paper-200m over 2 s");
+        assert_eq!(chart.title, "Cost of accuracy: runs of paper-200m over 2 s");
         assert_eq!(chart.y_label, "relative error of orbit size over [1.333, 2) s");
     }
 

@@ -13,7 +13,7 @@ use crate::shown::{Shown, node_of, numbers, shown_in, with_unit};
 /// node, or the `fields` that are given.
 ///
 /// # Errors
-/// A problem that names the columns there are, where a field is none of them.
+/// A problem that names the columns there are, if a field is none of them.
 pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Table, ChartError> {
     let rotation =
         ROTATION.iter().filter(|_| fields.is_none()).filter_map(|quantity| lowest(layout, quantity));
@@ -23,24 +23,24 @@ pub fn shown_of_history(layout: &Table, fields: Option<&[String]>) -> Result<Tab
     layout.select(&names).map_err(|missing| ChartError::no_such_column(layout, &missing))
 }
 
-/// The lowest node of a string, and what snapshots tell of its rotation.
+/// Lowest node of a string, with its rotation in snapshots.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bit {
     /// Number of the node.
     pub node: u32,
     /// Measured depth \[m\].
     pub measured_depth: f64,
-    /// `time`, `rotation_speed` and `torque` of this node alone, out of the snapshots; none where there are no snapshots of torsion.
+    /// `time`, `rotation_speed` and `torque` of this node alone, out of the snapshots; none if there are no snapshots of torsion.
     pub snapshots: Option<Table>,
 }
 
-/// Columns of a history over time: u and v, or the `fields` that are given. Where nothing is asked for and the string twists, rotation
-/// speed and torque at the `bit` stand below: of its history, or else of the snapshots. Where neither has the bit, or none is given, they are
+/// Columns of a history over time: u and v, or the `fields` that are given. If nothing is requested and the string twists, rotation
+/// speed and torque at the `bit` follow below: of its history, or else of the snapshots. If neither has the bit, or none is given, they are
 /// those of the lowest node that has them; in place of the bit, the picture says so. The legend says of each line where its node lies
 /// and which way the motion goes, for nodes that are among the `places`.
 ///
 /// # Errors
-/// A problem that names the columns there are, where a field is none of them.
+/// A problem that names the columns there are, if a field is none of them.
 pub fn history(
     table: &Table,
     fields: Option<&[String]>,
@@ -83,7 +83,7 @@ const ROTATION: [&Quantity; 2] = [&ROTATION_SPEED, &TORQUE];
 #[derive(Default)]
 struct Rotation<'t> {
     panels: Vec<Panel<'t>>,
-    /// Where this is not what one would take it for.
+    /// Note on a quantity that differs from what its name suggests.
     remark: String,
 }
 
@@ -97,7 +97,7 @@ struct Panel<'t> {
 }
 
 impl<'t> Rotation<'t> {
-    /// That at the bit, or else that of the lowest node of the history.
+    /// Label of the bit, or else of the lowest node of the history.
     fn of(history: &'t Table, places: &[Place], bit: Option<&'t Bit>) -> Self {
         let lowest = ROTATION.map(|quantity| lowest(history, quantity));
         let node = lowest.into_iter().flatten().find_map(|name| Name::parse(name)?.place?.node());
@@ -169,7 +169,7 @@ fn lowest<'t>(table: &'t Table, quantity: &Quantity) -> Option<&'t str> {
     columns.max_by_key(|(node, _)| *node).map(|(_, name)| name.as_str())
 }
 
-/// Whether the numbers of a column are not all the same.
+/// True if the numbers of a column are not all the same.
 fn varies(table: &Table, name: &str) -> bool {
     let values = table.columns.get(name).and_then(Column::numbers);
     values.is_some_and(|values| values.iter().any(|value| *value != values[0]))
@@ -257,7 +257,7 @@ mod tests {
             assert!(!others.iter().all(|tick| svg.contains(tick)), "{others:?} in {svg}");
             assert!(svg.contains(says) && !svg.contains(says_not), "{svg}");
         }
-        // A node that is held tells nothing of the bit, and a string that does not twist has nothing to tell.
+        // A fixed node has no motion of the bit, and a string that does not twist has no rotation.
         let held = picture(297, None, &twisting(0.0, -1e3)).svg();
         assert!(held.contains(untold) && !held.contains("rpm"), "{held}");
         let lateral = Table::default().with("time", column(&[0.0, 1.0])).with("u_10", column(&[0.0, 1e-3]));

@@ -1,7 +1,7 @@
 //! Pictures of results, as SVG and PNG.
 //!
 //! [`profile`], [`history`], [`orbit`], [`spectrum`] and [`sweep`] take the very table that is served as JSON or CSV and choose
-//! what of it is shown, in which units, under which names; [`work_precision`] does so for a cost study. What they give is laid out
+//! the shown columns, their units and names; [`work_precision`] does so for a cost study. The result is laid out
 //! on a page and written by [`picture`], which knows nothing of tables.
 
 mod cost;

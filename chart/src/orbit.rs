@@ -8,20 +8,20 @@ use crate::error::ChartError;
 use crate::picture::{Drawing, OrbitPlot};
 use crate::shown::{node_of, numbers, width};
 
-/// Where and how the hole stands about a node, for the picture of its orbit.
+/// Position and direction of the hole at a node, for the picture of its orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hole {
     /// The radius at which the string touches the wall \[m\].
     pub clearance: Option<f64>,
-    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    /// Angle of the low side, from u towards v \[rad\]; none if the hole is vertical.
     pub low_side: Option<f64>,
 }
 
 /// The path of a node across its hole: the whole hole, or with `zoom` the motion alone with the hole as an inset; unless that is said,
-/// the motion alone where it is below a tenth of the hole.
+/// the motion alone if it is below a tenth of the hole.
 ///
 /// # Errors
-/// When the table is not an orbit.
+/// The table is not an orbit.
 pub fn orbit(table: &Table, hole: &Hole, title: &str, zoom: Option<bool>) -> Result<Drawing, ChartError> {
     let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {

@@ -1,22 +1,22 @@
-//! Where nodes lie in the well, in words.
+//! Positions of nodes in the well, in words.
 
 use drillsweep_quantity::columns::*;
 use drillsweep_quantity::{Name, Quantity};
 
 use crate::words::words;
 
-/// Where a node lies, for what is said of its columns.
+/// Position of a node, for the notes on its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Place {
     /// Number of the node, 1 at the top.
     pub node: u32,
     /// Measured depth \[m\].
     pub measured_depth: f64,
-    /// Where the low side lies, as an angle from u towards v \[rad\]; none where the hole is vertical.
+    /// Angle of the low side, from u towards v \[rad\]; none if the hole is vertical.
     pub low_side: Option<f64>,
 }
 
-/// Description of a column; of a node that is among the `places`, with where that lies and which way it moves.
+/// Description of a column; of a node that is among the `places`, with its position and its direction of motion.
 pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
     let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);
@@ -32,7 +32,7 @@ pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
     format!("{elsewhere} at {depth} m MD{direction}{window}")
 }
 
-/// Which way a lateral displacement or speed counts, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
+/// Sign of a lateral displacement or speed, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
 /// e1 on the low side e2 is on the left.
 fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
     /// Directions this near to one that has a name bear it \[deg\].

@@ -11,7 +11,7 @@ use crate::words::words;
 /// Values along the string, depth downwards: C_f, or the first of the `fields` that are given.
 ///
 /// # Errors
-/// A problem that names the columns there are, where a field is none of them.
+/// A problem that names the columns there are, if a field is none of them.
 pub fn profile(table: &Table, fields: Option<&[String]>, title: &str) -> Result<Drawing, ChartError> {
     let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
         FRICTION_COEFFICIENT.name

@@ -46,7 +46,7 @@ impl<'t> Shown<'t> {
         Ok(Shown { columns, unit })
     }
 
-    /// Label of the axis; a column of one of the `places` gives where that is.
+    /// Label of the axis; for a column of one of the `places`, with its position.
     pub(crate) fn label(&self, places: &[Place]) -> String {
         let name = match self.columns.as_slice() {
             [(only, _)] => at_place(only, places),
@@ -119,7 +119,7 @@ pub(crate) fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, ChartError>
     }
 }
 
-/// The title of a picture: what it shows, and at which parameters.
+/// The title of a picture: its subject, with the parameters.
 pub fn caption(what: &str, parameters: &IndexMap<String, f64>) -> String {
     let value = |(name, value): (&String, &f64)| format!(", {} {}", words(name), amount(name, *value));
     let values: String = parameters.iter().map(value).collect();

@@ -14,14 +14,14 @@ use crate::words::words;
 /// Lines of a spectrum that are named in its picture.
 const NAMED_LINES: usize = 6;
 
-/// Lines nearer to zero frequency than so many bins belong to the mean, whatever the window.
+/// Lines nearer to zero frequency than this many bins belong to the mean, whatever the window.
 const MEAN_BINS: f64 = 2.5;
 
 /// The full spectrum of a node, with its highest lines named. The mean position is left out: it would dwarf the rest. What lies beyond
 /// the frequency that the run's steps resolve is shaded, and no line there is named.
 ///
 /// # Errors
-/// When the table is not a spectrum.
+/// The table is not a spectrum.
 pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
     let (frequency, amplitude) = (numbers(table, FREQUENCY.name)?, numbers(table, AMPLITUDE.name)?);
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
@@ -43,7 +43,7 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
     let reaches_beyond = frequency.iter().any(|frequency| !is_resolved(*frequency));
     let shade = resolved.filter(|_| reaches_beyond).map(|beyond| Shade {
         beyond,
-        name: format!("beyond what the step resolves (±{} Hz)", three_digits(beyond)),
+        name: format!("not resolved by the step (±{} Hz)", three_digits(beyond)),
     });
     let label = |peak: &Value| {
         let (frequency, amplitude) = (peak["frequency"].as_f64()?, width(peak["amplitude"].as_f64()?));
@@ -122,7 +122,7 @@ mod tests {
             .with("frequency", column(&frequency))
             .attribute("resolution", 0.1)
             .attribute("peaks", peaks.to_vec());
-        let words = "beyond what the step resolves";
+        let words = "not resolved by the step";
         let unmarked = spectrum(&table, "").unwrap().svg();
         assert!(unmarked.contains("+6.00 Hz") && !unmarked.contains(words));
         let all = spectrum(&table.clone().attribute("resolved_hz", 20.0), "").unwrap().svg();

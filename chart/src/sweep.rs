@@ -17,11 +17,11 @@ const NOT_SETTLED: &str = "not_settled";
 /// Part of a sweep that is shown, and how.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SweepView {
-    /// How the values of parameters are placed on a map.
+    /// Spacing of the values of parameters on a map.
     pub spacing: Spacing,
     /// Parameters that are held, with their values in the units of the table.
     pub slice: Vec<(String, f64)>,
-    /// Where the nodes lie that the columns are of, as far as that is one place in the whole sweep.
+    /// Positions of the nodes of the columns, if they are the same in the whole sweep.
     pub places: Vec<Place>,
 }
 
@@ -29,10 +29,10 @@ pub struct SweepView {
 /// over two a map. Over more, a map over the first two that the view's slice does not hold; further ones are held at the first value that
 /// they have, and the picture says so. Those of a design that is no grid cannot be held: all points are shown, which it says as
 /// well. Texts have a colour each, the most frequent eight or, with others, seven. Points that are verified are marked on a map, and
-/// what that shows stands below the title; points that have not settled have crosses.
+/// the notes stand below the title; points that have not settled have crosses.
 ///
 /// # Errors
-/// A problem that names the columns there are, where a field is none of them, or none is given; or the values that there are, where
+/// A problem that names the columns there are, if a field is none of them, or none is given; or the values that there are, if
 /// the slice is at none of them.
 pub fn sweep(
     table: &Table,
@@ -128,9 +128,9 @@ pub fn sweep(
 struct Slice<'t> {
     /// Rows of the table, in order.
     rows: Vec<usize>,
-    /// The parameters that it is over: two, or fewer where fewer vary.
+    /// The parameters that it is over: two, or fewer if fewer vary.
     axes: Vec<&'t str>,
-    /// Where it is, in words.
+    /// Its position in words.
     notes: Vec<String>,
 }
 
@@ -202,7 +202,7 @@ impl<'t> Slice<'t> {
     }
 }
 
-/// The texts in order of the alphabet, and for each row the index of its own; rare ones are others where a map has not enough colours.
+/// The texts in order of the alphabet, and for each row the index of its own; rare ones are others if a map has not enough colours.
 fn kinds(texts: &[Option<&str>]) -> (Vec<String>, Vec<f64>) {
     const OTHER: &str = "other";
     let mut counts: IndexMap<&str, usize> = IndexMap::new();
@@ -222,7 +222,7 @@ fn kinds(texts: &[Option<&str>]) -> (Vec<String>, Vec<f64>) {
     (counts.keys().map(|text| (*text).to_owned()).chain(other).collect(), values)
 }
 
-/// Which rows of a sweep's table are of points that are verified: those with the bias of any statistic.
+/// Marks rows of verified points in a sweep's table: those with the bias of any statistic.
 fn verified_rows(table: &Table) -> Vec<bool> {
     let mut is_verified = vec![false; table.rows()];
     for (_, column) in table.columns.iter().filter(|(name, _)| is_bias_column(name)) {

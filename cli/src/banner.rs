@@ -1,4 +1,4 @@
-//! The greeting of `drillsweep up`: where the page, the data and the way out are.
+//! Banner of `drillsweep up`: addresses of page and data, and the way to stop.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};

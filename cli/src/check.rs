@@ -1,4 +1,4 @@
-//! Whether what a data directory holds is whole.
+//! Verification of a data directory.
 
 use anyhow::ensure;
 use clap::Args;
@@ -14,7 +14,7 @@ use crate::text::count;
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     data: DataArguments,
-    /// Queue the points again whose results have lost a table, for the workers to compute anew.
+    /// Queue points again if their results have lost a table, so that workers recompute them.
     #[arg(long)]
     repair: bool,
     /// Print JSON.
@@ -22,7 +22,7 @@ pub(crate) struct CheckArguments {
     json: bool,
 }
 
-/// Reads the database and every blob, and fails if something is wrong with them; also where that is being repaired. Access of other
+/// Reads the database and every blob, and fails if something is wrong with them; also if that is being repaired. Access of other
 /// users to them is a warning.
 pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
     let config = arguments.data.existing_store(Role::Worker)?;

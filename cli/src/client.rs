@@ -16,24 +16,24 @@ use tokio::runtime::Runtime;
 /// The environment variable with the token; an argument would show in the list of processes.
 const TOKEN: &str = "DRILLSWEEP_TOKEN";
 
-/// Where a service of this machine listens.
+/// Address of a service on this machine.
 pub(crate) const DEFAULT_SERVER: &str = "http://127.0.0.1:7340";
 
 /// Characters of a sweep's identifier, a UUID.
 const IDENTIFIER_LENGTH: usize = 36;
 
-/// Which server.
+/// The server of a command.
 #[derive(Args, Clone)]
 pub(crate) struct ServerArguments {
-    /// Address of the server, as a URL or `host:port`. Its token, where it needs one, comes from the environment variable DRILLSWEEP_TOKEN.
+    /// Address of the server, as a URL or `host:port`. Its token, if it needs one, comes from the environment variable DRILLSWEEP_TOKEN.
     #[arg(long, env = "DRILLSWEEP_SERVER", default_value = DEFAULT_SERVER)]
     pub(crate) server: String,
 }
 
-/// How long a command that watches tolerates a server that does not answer, as during a restart.
+/// Time for which a command that watches tolerates a server without answers, as during a restart.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
-/// How long it waits between two tries.
+/// Pause between two tries.
 pub(crate) const RETRY_PAUSE: Duration = Duration::from_secs(1);
 
 /// A client of one server. Its calls block.
@@ -99,7 +99,7 @@ impl Client {
         self.request(path)?.json()
     }
 
-    /// Reads JSON, and tries again for a while where the server does not answer or is not available.
+    /// Reads JSON, and retries for a while if the server does not answer or is not available.
     pub(crate) fn get_with_retries<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         let deadline = Instant::now() + PATIENCE;
         loop {
@@ -112,7 +112,7 @@ impl Client {
         }
     }
 
-    /// The identifier of the sweep that a text means: its identifier, the beginning of it, or its name.
+    /// Identifier of the sweep that a text names by its identifier, the beginning of its identifier, or its name.
     pub(crate) fn sweep_id(&self, text: &str) -> anyhow::Result<String> {
         const FEWEST_CHARACTERS: usize = 4;
         let is_identifier = |text: &str| text.chars().all(|c| c.is_ascii_hexdigit() || c == '-');
@@ -137,7 +137,7 @@ impl Client {
         match candidates.as_slice() {
             [only] => Ok(only.id.clone()),
             [] => bail!(
-                "there is no sweep {text:?}: give its identifier, the beginning of it, or its name (`drillsweep list`)"
+                "there is no sweep {text:?}: give its identifier, the beginning of its identifier, or its name (`drillsweep list`)"
             ),
             several => {
                 let shown = several.iter().take(10);
@@ -171,7 +171,7 @@ impl Client {
         self.file(path)?.map_err(|problem| anyhow!("{path}: {problem}"))
     }
 
-    /// Reads a file, or the problem that the server answers with in its place. What keeps all files back is an error: no server, or
+    /// Reads a file, or the problem that the server answers with in its place. Causes that concern all files are errors: no server, or
     /// no right to read.
     pub(crate) fn file(&self, path: &str) -> anyhow::Result<Result<Bytes, String>> {
         let answer = self.request(path)?;
@@ -239,18 +239,18 @@ impl Answer {
         Ok(serde_json::from_slice(&self.body)?)
     }
 
-    /// Whether it is a problem of this kind.
+    /// True if it is a problem of this kind.
     pub(crate) fn is_of(&self, kind: ProblemKind) -> bool {
         let problem = serde_json::from_slice::<ProblemDetails>(&self.body);
         self.status.as_u16() == kind.status() && problem.is_ok_and(|problem| problem.type_uri == kind.uri())
     }
 
-    /// Whether all other files would be refused like this.
+    /// True if all other files would be refused for the same reason.
     pub(crate) fn refuses_all(&self) -> bool {
         matches!(self.status.as_u16(), 401 | 403 | 429)
     }
 
-    /// Wait that the server asks for, at most a minute.
+    /// Wait that the server requests, at most a minute.
     pub(crate) fn retry_after(&self) -> Option<Duration> {
         let seconds: u64 = self.headers.get(RETRY_AFTER)?.to_str().ok()?.parse().ok()?;
         Some(Duration::from_secs(seconds.min(60)))
@@ -265,7 +265,7 @@ impl Answer {
     }
 }
 
-/// Whether the server does not answer, or is not available for the time being.
+/// True if the server does not answer, or is unavailable for the time being.
 pub(crate) fn is_worth_another_try(answer: Result<&Answer, &anyhow::Error>) -> bool {
     answer.is_ok_and(|answer| matches!(answer.status.as_u16(), 429 | 502..=504)) || answer.is_err()
 }

@@ -26,7 +26,7 @@ pub(crate) struct CostArguments {
     scenarios: Vec<String>,
     #[command(flatten)]
     changes: ChangeArguments,
-    /// Seconds of simulated time of each run in place of the scenario's own; orbits are then looked at over the last third,
+    /// Seconds of simulated time of each run in place of the scenario's own; orbits are then evaluated over the last third,
     /// spectra over the last sixth.
     #[arg(long, value_name = "SECONDS")]
     duration: Option<f64>,
@@ -46,18 +46,18 @@ pub(crate) struct CostArguments {
     /// Meshes to compare, as factors on the element lengths, such as `2,0.5,0.25`.
     #[arg(long, value_name = "FACTORS", value_delimiter = ',')]
     mesh_factors: Vec<f64>,
-    /// Look for the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
+    /// Find the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
     /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless given.
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     total: Option<f64>,
-    /// Switch each effect off in turn instead, at the scenario's own accuracy: what it changes, what time it saves.
+    /// Switch each effect off in turn instead, at the scenario's own accuracy, and report changes and saved time.
     #[arg(long, conflicts_with_all = ["methods", "mesh_factors", "total"])]
     effects: bool,
     /// Simulations run at the same time; absent means one per core. They disturb each other's processor time: 1 measures best.
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZeroUsize>,
     /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png; of several scenarios a folder each, with
-    /// summary.csv and summary.json of all beside them.
+    /// summary.csv and summary.json of all next to them.
     #[arg(long, value_name = "DIRECTORY")]
     output: Option<PathBuf>,
     /// Measure of the chart: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
@@ -78,7 +78,7 @@ enum Format {
 /// Runs the studies and prints them.
 ///
 /// # Errors
-/// When a scenario is not valid, before any is run; and in the end, when a study failed.
+/// A scenario is not valid, before any is run; and in the end, when a study failed.
 pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
     let scenarios: Vec<Scenario> = arguments
         .scenarios
@@ -121,7 +121,7 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
         reports.push(report);
         if let (Some(directory), Some(report)) = (&arguments.output, reports.last()) {
             write(report, &directory.join(folder), arguments.measure)?;
-            // What is there stays, should a later one be interrupted.
+            // Completed studies stay if a later one is interrupted.
             write_summary(&reports, directory)?;
         }
     }
@@ -136,7 +136,7 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
     if failed.is_empty() { Ok(()) } else { bail!("no study of {}", failed.join(", ")) }
 }
 
-/// The scenario of this name with the study that the arguments ask for.
+/// The scenario of this name with the study of the arguments.
 fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
     let mut scenario = arguments.changes.applied_to(name, None)?.resolve()?;
     if scenario.name.is_empty() {
@@ -165,7 +165,7 @@ fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Says what the studies will take, measured by some short runs on this machine.
+/// Logs the expected cost of the studies, from some short runs on this machine.
 fn announce(scenarios: &[Scenario]) -> anyhow::Result<()> {
     let speed = calibrate()?;
     for scenario in scenarios {
@@ -183,7 +183,7 @@ fn announce(scenarios: &[Scenario]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A folder's name for each scenario: its own, with `-` for what no file system likes, and a number where another one has it already.
+/// Name of a folder for each scenario: its own, with `-` for unusual characters, and a number if another one has it already.
 fn folder_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut folders: Vec<String> = Vec::new();
     for name in names {

@@ -1,4 +1,4 @@
-//! Where the data lies, as the commands are told.
+//! Locations of the data, as arguments of commands.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use tokio::process::Command;
 
 use crate::exposure::{Exposed, database_files, exposed};
 
-/// Where the data lies.
+/// Locations of the data.
 #[derive(Args, Clone)]
 pub(crate) struct DataArguments {
-    /// Directory of the database and the object store, where these are not elsewhere.
+    /// Directory of the database and the object store, unless these are elsewhere.
     #[arg(long, value_name = "DIRECTORY", env = "DRILLSWEEP_DATA", default_value = "data")]
     data: PathBuf,
     /// Database: `postgres://user@host/name`, for many machines, or the path of a SQLite file, on a disk of this one;
@@ -30,14 +30,14 @@ pub(crate) struct DataArguments {
     #[arg(long, value_name = "FILE", env = "DRILLSWEEP_DATABASE_PASSWORD_FILE")]
     database_password_file: Option<PathBuf>,
     /// File with the credentials for the bucket, in the place of the environment's: the profile `[default]` of a shared credentials
-    /// file of AWS (aws_access_key_id, aws_secret_access_key, and aws_session_token where there is one).
+    /// file of AWS (aws_access_key_id, aws_secret_access_key, and aws_session_token if there is one).
     #[arg(long, value_name = "FILE", env = "DRILLSWEEP_OBJECTS_CREDENTIALS_FILE")]
     objects_credentials_file: Option<PathBuf>,
 }
 
 impl DataArguments {
     pub(crate) fn store(&self, role: Role) -> anyhow::Result<StoreConfig> {
-        // Whoever may read the files needs no token: what is made from here on is for this user alone.
+        // Readers of the files need no token: files that are made from here on are for this user alone.
         rustix::process::umask(Mode::RWXG | Mode::RWXO);
         let mut config = StoreConfig::in_directory(&self.data, role);
         if let Some(database) = &self.database {
@@ -55,7 +55,7 @@ impl DataArguments {
         Ok(config)
     }
 
-    /// The same for commands that look at what there is: they make no store where there is none.
+    /// The same for commands that inspect an existing store: they make none.
     pub(crate) fn existing_store(&self, role: Role) -> anyhow::Result<StoreConfig> {
         let config = self.store(role)?;
         anyhow::ensure!(config.exists(), "there is no store in {}", self.data.display());
@@ -67,7 +67,7 @@ impl DataArguments {
         self.data.join("scratch")
     }
 
-    /// Locations, each with its name, without secrets: the data directory as an absolute path, and what is elsewhere.
+    /// Locations, each with its name, without secrets: the data directory as an absolute path, and other locations.
     pub(crate) fn places(&self) -> Vec<(&'static str, String)> {
         let directory = std::path::absolute(&self.data).unwrap_or_else(|_| self.data.clone());
         let mut places = vec![("data", directory.display().to_string())];
@@ -91,7 +91,7 @@ impl DataArguments {
         exposed(paths)
     }
 
-    /// Hands it on to a process of this program. What is secret goes by its environment, which only this user can look at; arguments
+    /// Passes it to a process of this program. Secrets are passed by its environment, which only this user can read; arguments
     /// everybody can.
     pub(crate) fn hand_on(&self, command: &mut Command) {
         command.arg("--data").arg(&self.data);
@@ -143,7 +143,7 @@ fn credentials(path: &Path) -> anyhow::Result<BTreeMap<String, String>> {
     parse_credentials(&text).with_context(|| format!("the object store's credentials in {}", path.display()))
 }
 
-/// No message repeats what stands in the file, for it may be a secret.
+/// No message repeats the contents of the file, which may be a secret.
 fn parse_credentials(text: &str) -> anyhow::Result<BTreeMap<String, String>> {
     const REQUIRED: [&str; 2] = ["aws_access_key_id", "aws_secret_access_key"];
     const OPTIONAL: &str = "aws_session_token";

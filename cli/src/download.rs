@@ -1,4 +1,4 @@
-//! Downloads of stored tables: in stretches, some at once, verified, and taken up where an earlier download ended.
+//! Downloads of stored tables: in stretches, some at once, verified, and resumed after an interrupted download.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write as _;
@@ -24,10 +24,10 @@ const REQUESTS: usize = 4;
 
 impl Client {
     /// Downloads a stored table to a file, or returns the problem that the server answers in its place. Until it is whole it has the
-    /// further ending `part`, and what has come is kept.
+    /// further ending `part`, and received bytes are kept.
     ///
     /// # Errors
-    /// When the server does not answer for a while or refuses all files, or the file cannot be written.
+    /// The server does not answer for a while or refuses all files, or the file cannot be written.
     pub(crate) fn stored_table(
         &self,
         entry: &ArtifactEntry,
@@ -76,9 +76,9 @@ impl Client {
         Ok(Ok(()))
     }
 
-    /// Returns whether what an earlier download has left is the beginning of the table: its last bytes are those of the server.
+    /// Returns true if the remains of an earlier download are the beginning of the table: its last bytes are those of the server.
     fn goes_on_with(&self, entry: &ArtifactEntry, part: &Path, length: u64) -> anyhow::Result<bool> {
-        /// Bytes that are compared; what else differs shows in the hash of the whole.
+        /// Bytes that are compared; other differences show in the hash of the whole.
         const COMPARED: u64 = 4096;
         if length > entry.bytes {
             return Ok(false);
@@ -96,12 +96,12 @@ impl Client {
         loop {
             let request = self
                 .prepare(Method::GET, &entry.link)
-                // Of a compressed answer there are no ranges.
+                // Compressed answers have no ranges.
                 .header(ACCEPT_ENCODING, "identity")
                 .header(RANGE, format!("bytes={}-{}", range.start, range.end - 1))
                 .header(IF_RANGE, format!("\"{}\"", entry.hash));
             let answer = self.answer(request, &entry.link).await;
-            // That takes minutes, and other tables are there.
+            // Recomputing takes minutes, and other tables are there.
             let is_recomputed = answer.as_ref().is_ok_and(|answer| answer.is_of(ProblemKind::Recomputing));
             if !is_recomputed && is_worth_another_try(answer.as_ref()) && Instant::now() < deadline {
                 let wait = answer.ok().and_then(|answer| answer.retry_after());

@@ -39,7 +39,7 @@ impl fmt::Display for Exposed {
         let path = path.display();
         write!(
             formatter,
-            "other users have access to {path} (mode {mode:04o}), where no token is needed; close it with: chmod go= {path}"
+            "other users have access to {path} (mode {mode:04o}), without a token; remove it by: chmod go= {path}"
         )
     }
 }

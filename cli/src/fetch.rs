@@ -30,7 +30,7 @@ static TABLES: [&Layout; 7] = [
 pub(crate) struct FetchArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     /// Directory to write to; made if it does not exist.
     #[arg(long, value_name = "DIRECTORY", default_value = "results")]
@@ -41,7 +41,7 @@ pub(crate) struct FetchArguments {
     /// Download the sweep's table only.
     #[arg(long)]
     table_only: bool,
-    /// Succeed although points have no result yet: what there is is fetched either way, and another fetch brings the rest.
+    /// Succeed although points have no result yet: present results are fetched either way, and another fetch adds the rest.
     #[arg(long)]
     partial: bool,
     /// Print the names of the files as JSON instead of the directory's.
@@ -68,7 +68,7 @@ impl Format {
 
 /// Writes `sweep.json` as the server describes the sweep, `table` with a row a point, and a folder a point with its tables and full
 /// spectra. A file that the server cannot give
-/// does not keep the others back: `missing.json` tells what is not there and why, and the command fails. Files of points that have
+/// does not keep the others back: `missing.json` lists missing files with the reasons, and the command fails. Files of points that have
 /// not changed since they were fetched are left as they are, so that a fetch that was interrupted goes on.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
@@ -88,7 +88,7 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     }
     let manifest = arguments.output.join("missing.json");
     if files.missing.is_empty() {
-        // Of an earlier try, which may have found less.
+        // An earlier try may have found less.
         if manifest.exists() {
             std::fs::remove_file(&manifest)
                 .with_context(|| format!("cannot remove {}", manifest.display()))?;
@@ -104,13 +104,13 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     }
     ensure!(
         files.missing.is_empty(),
-        "{} files are missing; missing.json says which and why",
+        "{} files are missing; missing.json lists them with the reasons",
         files.missing.len()
     );
     let open = sweep.counts.queued + sweep.counts.running;
     if open > 0 {
         let text = format!("{open} of {} points have no result yet", sweep.counts.total);
-        ensure!(arguments.partial, "{text}; fetch again when they do, or take what there is by --partial");
+        ensure!(arguments.partial, "{text}; fetch again later, or fetch the present results by --partial");
         tracing::warn!("{text}");
     }
     Ok(())
@@ -128,7 +128,7 @@ fn refuse_another_sweeps(file: &Path, sweep: &Sweep) -> anyhow::Result<()> {
         Some(id) if id == sweep.id => Ok(()),
         Some(id) => bail!("{directory} has the results of sweep {id}; give another directory by --output"),
         None => bail!(
-            "{} does not say which sweep the files beside it are of; give another directory by --output",
+            "{} does not name the sweep of the files next to it; give another directory by --output",
             file.display()
         ),
     }
@@ -149,7 +149,7 @@ fn points(
         let point: PointDetail = client.get(&path)?;
         let folder = output.join(format!("point-{ordinal:04}"));
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-        // Written last, it says that what lies beside it is of this result.
+        // Written last, it shows that the files next to it are of this result.
         let (mark, described) = (folder.join("point.json"), serde_json::to_string_pretty(&point)?);
         files.is_unchanged = std::fs::read(&mark).is_ok_and(|known| known == described.as_bytes());
         let has = |name: &str| point.tables.iter().any(|table| table == name);
@@ -182,7 +182,7 @@ fn points(
                 };
                 let node_and_format = format!("{query}&window=hann&format={format}");
                 let Some(windows) = point.scenario.spectrum_windows() else {
-                    // Of a run that settles only its window is kept.
+                    // Runs that settle keep only their window.
                     let name = format!("spectrum-{place}.{format}");
                     files.download(
                         client,
@@ -217,7 +217,7 @@ fn recorded_places(summary: &Map<String, Value>) -> impl Iterator<Item = Place<'
 struct Files {
     written: Vec<PathBuf>,
     missing: Vec<Missing>,
-    /// Whether files of the point in hand that are there already are those that the server has.
+    /// True if the present files of this point are those that the server has.
     is_unchanged: bool,
 }
 
@@ -262,7 +262,7 @@ impl Files {
         Ok(())
     }
 
-    /// Whether a file need not be downloaded. One may be empty: the machine lost power before its bytes were on the disk.
+    /// True if a file need not be downloaded. An empty one must be: the machine lost power before its bytes were on the disk.
     fn has(&self, file: &Path) -> bool {
         self.is_unchanged && file.metadata().is_ok_and(|metadata| metadata.len() > 0)
     }

@@ -1,4 +1,4 @@
-//! Collecting garbage: what has reached its age, and blobs that no row names.
+//! Garbage collection: expired data, and blobs that no row names.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ pub(crate) struct GcArguments {
     retention: RetentionArguments,
 }
 
-/// How long data are kept.
+/// Ages at which data are deleted.
 #[derive(Args, Clone)]
 pub(crate) struct RetentionArguments {
     /// Days for which recordings (histories, from which orbits and spectra are cut, and snapshots) are kept.

@@ -1,4 +1,4 @@
-//! Health for supervisors: whether the server is ready, whether a worker on this machine is alive.
+//! Health for supervisors: readiness of the server, or a live worker on this machine.
 
 use std::time::Duration;
 

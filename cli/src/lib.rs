@@ -102,7 +102,7 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Delete expired data, and blobs that nothing refers to.
+    /// Delete expired data, and blobs without references.
     Gc(gc::GcArguments),
     /// Make, list and revoke tokens.
     #[command(subcommand)]
@@ -139,7 +139,7 @@ pub fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Without the backtrace that anyhow's own way of printing adds where RUST_BACKTRACE is set: what ends here is a
+            // Without the backtrace that anyhow's own way of printing adds if RUST_BACKTRACE is set: this is a
             // message to the user; panics have theirs.
             let _ = writeln!(std::io::stderr().lock(), "Error: {}", visible(&chain(&error)));
             ExitCode::FAILURE
@@ -239,7 +239,7 @@ fn run() -> anyhow::Result<()> {
 fn print(text: &str) {
     match writeln!(std::io::stdout().lock(), "{}", visible(text)) {
         Ok(()) => {}
-        // The reader has what it wanted, as `head` has.
+        // The reader has enough, as `head` has.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
         Err(error) => {
             tracing::error!(%error, "the output cannot be written");

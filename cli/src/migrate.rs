@@ -20,7 +20,7 @@ pub(crate) struct MigrateArguments {
     data: DataArguments,
     #[command(flatten)]
     target: TargetArguments,
-    /// Take the store as it is now though workers use it: what they and the server change later is not carried over, and running
+    /// Copy the store as it is now although workers use it: later changes are not copied, and running
     /// points arrive as queued.
     #[arg(long)]
     while_running: bool,
@@ -29,25 +29,25 @@ pub(crate) struct MigrateArguments {
     json: bool,
 }
 
-/// Where the data is carried to. None of it is taken from the environment, which says where it is now; but for the service that has
+/// Destination of the data. The environment does not set it, since it names the present store; except for the service that has
 /// the bucket.
 #[derive(Args)]
 struct TargetArguments {
-    /// Directory for the database and the object store, where these are not to lie elsewhere.
+    /// Directory for the database and the object store, unless these are placed elsewhere.
     #[arg(long, value_name = "DIRECTORY")]
     to_data: Option<PathBuf>,
-    /// Database to carry the store to, which must be an empty one: `postgres://user@host/name`, or the path of a SQLite file;
+    /// Target database, which must be empty: `postgres://user@host/name`, or the path of a SQLite file;
     /// `drillsweep.sqlite` in the directory of `--to-data` unless given.
     #[arg(long, visible_alias = "to", value_name = "DATABASE")]
     to_database: Option<DatabaseLocation>,
-    /// Object store to carry the tables of results to: `s3://BUCKET/PREFIX`, or a directory; `blobs` in the directory of `--to-data`
-    /// unless given. That which has them already may be named: they are verified, and stay.
+    /// Target object store for the tables of results: `s3://BUCKET/PREFIX`, or a directory; `blobs` in the directory of `--to-data`
+    /// unless given. One that has them already is permitted: they are verified, and stay.
     #[arg(long, value_name = "OBJECTS")]
     to_objects: Option<ObjectsLocation>,
-    /// File with the password for the PostgreSQL database to carry the store to.
+    /// File with the password for the target PostgreSQL database.
     #[arg(long, value_name = "FILE")]
     to_database_password_file: Option<PathBuf>,
-    /// File with the credentials for the bucket to carry the tables to, as `--objects-credentials-file` takes it.
+    /// File with the credentials for the target bucket, in the form of `--objects-credentials-file`.
     #[arg(long, value_name = "FILE")]
     to_objects_credentials_file: Option<PathBuf>,
 }
@@ -56,10 +56,12 @@ impl TargetArguments {
     fn store(&self) -> anyhow::Result<StoreConfig> {
         let mut config = match (&self.to_data, &self.to_database, &self.to_objects) {
             (Some(data), ..) => StoreConfig::in_directory(data, Role::Server),
-            // Nothing of it stays.
+            // Nothing stays.
             (None, Some(_), Some(_)) => StoreConfig::in_directory(&PathBuf::new(), Role::Server),
             (None, ..) => {
-                anyhow::bail!("where to? Give --to-database and --to-objects, or --to-data for a directory")
+                anyhow::bail!(
+                    "no destination: give --to-database and --to-objects, or --to-data for a directory"
+                )
             }
         };
         if let Some(database) = &self.to_database {
@@ -78,7 +80,7 @@ impl TargetArguments {
     }
 }
 
-/// Carries a store over, and fails if a blob of it was lost already.
+/// Copies a store, and fails if one of its blobs was lost already.
 pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
     let source = arguments.data.existing_store(Role::Worker)?;
     let target = arguments.target.store()?;

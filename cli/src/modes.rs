@@ -90,3 +90,33 @@ fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
     writeln!(text, "{BIT_NOT_JUDGED}")?;
     Ok(text)
 }
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_sim::modes::Mode;
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn modes_are_listed_with_the_range_that_was_searched() {
+        let mode = |kind: &str, frequency_hz: f64, growth_rate: f64| -> Mode {
+            let mode = json!({
+                "frequency_hz": frequency_hz, "growth_rate": growth_rate, "kind": kind, "lateral_share": 0.998,
+                "torsional_share": 0.0015, "axial_share": 0.0005, "whirl": -0.75, "node": 12, "measured_depth": 57.8,
+                "extent": [12.25, 143.5],
+            });
+            serde_json::from_value(mode).unwrap()
+        };
+        let mut found = Modes {
+            modes: vec![mode("torsional", 0.24, -0.031), mode("backward", 1.23456, 0.5)],
+            complete_to_hz: 2.0,
+            complete_to_rate: 1.5,
+            completeness: Completeness::Counted,
+        };
+        let counted = text("paper-200m", &found).unwrap();
+        found.modes.clear();
+        found.completeness = Completeness::Missing(2);
+        insta::assert_snapshot!([counted, text("", &found).unwrap()].join("\n"));
+    }
+}

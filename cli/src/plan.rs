@@ -1,4 +1,4 @@
-//! Plan of a scenario: estimates of what it will take, without running it.
+//! Plan of a scenario: estimates of its cost, without running it.
 
 use std::fmt::Write as _;
 
@@ -141,4 +141,42 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         writeln!(text, "warning: {warning}")?;
     }
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_scenario::ScenarioRequest;
+    use drillsweep_sim::study::plan::MachineSpeed;
+    use serde_json::Value;
+
+    use super::*;
+
+    fn text(preset: &str, changes: &[(&str, Value)]) -> String {
+        let mut request = ScenarioRequest::preset(preset);
+        request.set.extend(changes.iter().map(|(path, value)| ((*path).to_owned(), value.clone())));
+        let scenario = request.resolve().unwrap();
+        let speed = MachineSpeed {
+            statics_per_node: 2e-4,
+            start_per_node: [2e-5; 4],
+            step_per_node: [[1e-6; 3], [4e-6; 3], [6e-6; 3], [5e-7; 3]],
+            large_mesh_factor: 1.2,
+            along_elements: [1.1; 4],
+        };
+        plan_text(&Plan::new(&scenario, Some(&speed)).unwrap().with_equilibrium(&scenario)).unwrap()
+    }
+
+    #[test]
+    fn a_plan_has_effects_mesh_and_methods() {
+        insta::assert_snapshot!(text("paper-200m", &[]));
+    }
+
+    #[test]
+    fn a_plan_of_a_study_has_its_runs_and_a_plan_of_statics_has_none() {
+        let study = [("cost_study", json!({"presets": ["draft"], "methods": []})), ("duration", json!(2))];
+        let statics = [("effects.transient", json!("off")), ("effects.torsion", json!("off"))];
+        let texts = [text("paper-200m", &study), text("paper-200m", &statics)];
+        let without_effects =
+            texts.each_ref().map(|text| text.split_once("equilibrium with").expect("after the effects").1);
+        insta::assert_snapshot!(without_effects.join("\n"));
+    }
 }

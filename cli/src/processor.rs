@@ -13,7 +13,7 @@ pub(crate) fn check() -> Result<(), String> {
     supports(__cpuid(1).ecx, extended)
 }
 
-/// Whether FMA (bit 12 of ECX of CPUID leaf 1) and AVX2 (bit 5 of EBX of leaf 7) are there (Intel SDM, volume 2A, CPUID).
+/// Checks for FMA (bit 12 of ECX of CPUID leaf 1) and AVX2 (bit 5 of EBX of leaf 7) (Intel SDM, volume 2A, CPUID).
 fn supports(leaf_1_ecx: u32, leaf_7_ebx: u32) -> Result<(), String> {
     let missing: Vec<_> = [("FMA", leaf_1_ecx & 1 << 12 != 0), ("AVX2", leaf_7_ebx & 1 << 5 != 0)]
         .into_iter()

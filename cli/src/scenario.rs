@@ -1,4 +1,4 @@
-//! Scenarios as commands are given them.
+//! Scenarios as arguments of commands.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(crate) struct ChangeArguments {
 }
 
 impl ScenarioArguments {
-    /// The scenario asked for, at a named accuracy if one is given. It is not validated yet.
+    /// The requested scenario, at a named accuracy if one is given. It is not validated yet.
     pub(crate) fn resolve(&self, accuracy: Option<&str>) -> anyhow::Result<Scenario> {
         Ok(self.request(accuracy)?.resolve()?)
     }
@@ -46,7 +46,7 @@ impl ChangeArguments {
     }
 }
 
-/// A preset by name, or what a file asks for: a scenario, or a preset or scenario with changes.
+/// A preset by name, or the request of a file: a scenario, or a preset or scenario with changes.
 pub(crate) fn read(name: &str) -> anyhow::Result<ScenarioRequest> {
     let path = Path::new(name);
     let text = || std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"));
@@ -72,7 +72,7 @@ pub(crate) fn parse_set(text: &str) -> anyhow::Result<(String, Value)> {
 pub(crate) fn parse_value(text: &str) -> anyhow::Result<Value> {
     match serde_json::from_str(text) {
         Ok(value) => Ok(value),
-        // What begins like JSON was meant to be: as a text it would only be refused for another reason.
+        // Text that begins like JSON is meant as JSON: as plain text it would only be refused for another reason.
         Err(error) if text.starts_with(['{', '[', '"']) => {
             bail!("is not JSON (as in {{\"from\": 2, \"to\": 5}}): {error}")
         }

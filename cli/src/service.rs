@@ -37,13 +37,13 @@ const CHILD_GRACE: Duration = Duration::from_secs(10);
 /// Time for the database to close, and then for blocking threads to return, before the process ends without them.
 const LAST_GRACE: Duration = Duration::from_secs(1);
 
-/// Where the server listens, and what it allows.
+/// Addresses and limits of the server.
 #[derive(Args, Clone)]
 struct ListenArguments {
     /// Address to listen on; anything but this machine needs a token first (`drillsweep token create`).
     #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_LISTEN", default_value_t = DEFAULT_ADDRESS)]
     listen: SocketAddr,
-    /// Address on which `/metrics` is served, without tokens; absent means not at all.
+    /// Address on which `/metrics` is served, without tokens; absent means none.
     #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_METRICS_LISTEN")]
     metrics_listen: Option<SocketAddr>,
     /// File with an administrator's token that was made elsewhere: 32 to 200 visible ASCII characters.
@@ -55,7 +55,7 @@ struct ListenArguments {
     /// Requests that an owner may make at once (the size of the token bucket).
     #[arg(long, value_name = "NUMBER", default_value_t = OwnerLimits::default().request_burst)]
     request_burst: NonZeroU32,
-    /// How often what need not be kept any more is deleted, such as `24h`; `0` leaves that to `drillsweep gc`.
+    /// Interval of garbage collection, such as `24h`; `0` leaves it to `drillsweep gc`.
     #[arg(long, value_name = "TIME_SPAN", env = "DRILLSWEEP_RETENTION_INTERVAL", default_value = "24h", value_parser = parse_interval)]
     retention_interval: Duration,
     #[command(flatten)]
@@ -77,16 +77,16 @@ pub(crate) struct UpArguments {
     data: DataArguments,
     #[command(flatten)]
     listen: ListenArguments,
-    /// First of the addresses on which the workers serve `/metrics`, without tokens: one a worker, with ports that follow each other.
+    /// First address on which workers serve `/metrics`, without tokens: consecutive ports, one for each worker.
     #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_WORKER_METRICS_LISTEN")]
     worker_metrics_listen: Option<SocketAddr>,
-    /// Number of worker processes; one per core unless given.
+    /// Number of worker processes; one per core by default.
     #[arg(long, value_name = "NUMBER")]
     workers: Option<usize>,
     /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
     #[arg(long, value_name = "SECONDS", env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
-    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
+    /// Time limit of one attempt at a point, such as `30m`; unlimited by default.
     #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     point_timeout: Option<Duration>,
     #[command(flatten)]
@@ -95,7 +95,7 @@ pub(crate) struct UpArguments {
 
 #[derive(Args)]
 struct ScratchArguments {
-    /// Directory for temporary files, which hold what a running point records: up to 7 GiB a worker, on a disk of its own machine; `scratch`
+    /// Directory for temporary files, which hold the records of a running point: up to 7 GiB a worker, on a disk of its own machine; `scratch`
     /// in the data directory unless given.
     #[arg(long, value_name = "DIRECTORY", env = "DRILLSWEEP_SCRATCH")]
     scratch: Option<PathBuf>,
@@ -116,22 +116,22 @@ pub(crate) struct WorkerArguments {
     /// Lease of a worker on its point, in seconds: a silent worker's point is queued again after that.
     #[arg(long, value_name = "SECONDS", env = "DRILLSWEEP_LEASE_SECONDS", default_value_t = 60.0)]
     lease_seconds: f64,
-    /// End when there is nothing left to claim.
+    /// End when no point is left to claim.
     #[arg(long)]
     drain: bool,
-    /// End after so long, such as `3h`, `90m` or `600s`; the running point is suspended with a checkpoint, from which
+    /// End after this time, such as `3h`, `90m` or `600s`; the running point is suspended with a checkpoint, from which
     /// another worker continues.
     #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     max_runtime: Option<Duration>,
-    /// Longest that one attempt at a point may take, such as `30m`; unlimited unless given.
+    /// Time limit of one attempt at a point, such as `30m`; unlimited by default.
     #[arg(long, value_name = "TIME_SPAN", value_parser = parse_span)]
     point_timeout: Option<Duration>,
-    /// Address on which `/metrics` is served, without tokens; absent means not at all.
+    /// Address on which `/metrics` is served, without tokens; absent means none.
     #[arg(long, value_name = "ADDRESS", env = "DRILLSWEEP_WORKER_METRICS_LISTEN")]
     metrics_listen: Option<SocketAddr>,
     #[command(flatten)]
     scratch: ScratchArguments,
-    /// Simulated seconds per second at most: holds points back, to see what becomes of a running one that is stopped or lost.
+    /// Largest number of simulated seconds per second: slows points down, for tests of stopped or lost runs.
     #[arg(long, env = "DRILLSWEEP_PACE", hide = true, value_parser = parse_pace)]
     pace: Option<f64>,
     /// Claim points of another version of the physics, as a worker of another version does.
@@ -154,10 +154,10 @@ impl UpArguments {
 }
 
 impl ScratchArguments {
-    /// The directory, which is made where it is not there.
+    /// The directory, which is made if it is not there.
     fn directory(&self, data: &DataArguments) -> anyhow::Result<PathBuf> {
         let directory = self.scratch.clone().unwrap_or_else(|| data.scratch());
-        // For this user alone, as all data are.
+        // Only this user has access, as to all data.
         let make = DirBuilder::new().recursive(true).mode(0o700).create(&directory);
         make.with_context(|| format!("cannot make {}", directory.display()))?;
         Ok(directory)
@@ -192,7 +192,7 @@ pub(crate) fn up(arguments: &UpArguments) -> anyhow::Result<()> {
     })
 }
 
-/// Asks the other parts to end once this one has.
+/// Requests the other parts to end once this one has ended.
 async fn stopping_others<T>(part: impl Future<Output = T>, stop: &watch::Sender<bool>) -> T {
     let ended = part.await;
     stop.send_replace(true);
@@ -244,7 +244,7 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
 const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 /// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: glibc reads them at the start only.
-/// Where that fails, the server takes more memory.
+/// If that fails, the server takes more memory.
 fn bound_memory() {
     let is_given = |(setting, _): &(&str, &str)| std::env::var_os(setting).is_some();
     if cfg!(not(target_env = "gnu")) || ALLOCATOR.iter().all(is_given) {
@@ -379,11 +379,11 @@ impl Service {
     }
 }
 
-/// How many connections the system's limit of open files leaves room for. The limit is raised as far as this process may.
+/// Number of connections that the system's limit of open files permits. The limit is raised as far as this process may.
 fn room_for_connections() -> usize {
-    /// For the database, stored files, the reserve of connections, and whatever the program is started by.
+    /// Files for the database, stored files, the reserve of connections, and the parent process.
     const OTHERS: u64 = 300;
-    /// As far as the limit is raised.
+    /// Largest limit that is set.
     const ENOUGH: u64 = 65_536;
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let (current, raised) = (current.unwrap_or(ENOUGH), maximum.unwrap_or(ENOUGH).min(ENOUGH));
@@ -397,7 +397,7 @@ async fn bind(address: SocketAddr) -> anyhow::Result<TcpListener> {
     TcpListener::bind(address).await.with_context(|| format!("cannot listen on {address}"))
 }
 
-/// Keeps a number of worker processes alive until asked to stop. If one cannot be kept, all are stopped.
+/// Keeps a number of worker processes alive until a request to stop. If one cannot be kept, all are stopped.
 async fn keep_workers(
     arguments: &UpArguments,
     number: usize,
@@ -486,7 +486,7 @@ async fn bury(store: &StoreConfig, process: u32, note: &str) -> drillsweep_store
     Ok(())
 }
 
-/// How a worker ended, for those who look for the reason.
+/// End of a worker in words, for the log.
 fn how_it_ended(status: ExitStatus, was_memory_short: bool) -> String {
     match (status.signal(), status.code()) {
         // The system ends processes with this signal when memory is short; so do people.
@@ -501,14 +501,14 @@ fn how_it_ended(status: ExitStatus, was_memory_short: bool) -> String {
     }
 }
 
-/// Processes that the system has ended for lack of memory since it was started; 0 where it does not tell.
+/// Number of processes that the system has ended for lack of memory since its start; 0 if it does not report it.
 fn memory_kills() -> u64 {
     let counters = std::fs::read_to_string("/proc/vmstat").unwrap_or_default();
     let count = counters.lines().find_map(|line| line.strip_prefix("oom_kill "));
     count.and_then(|count| count.trim().parse().ok()).unwrap_or(0)
 }
 
-/// Asks a child to end, and ends it after a while.
+/// Requests a child to end, and kills it after a while.
 async fn end_child(mut child: Child) -> anyhow::Result<()> {
     if let Some(pid) = child.id().and_then(|id| rustix::process::Pid::from_raw(id as i32)) {
         // A child that has ended already cannot be signalled, and need not be.

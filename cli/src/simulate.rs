@@ -188,7 +188,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 .lines
                 .iter()
                 .map(|line| {
-                    let doubt = if line.is_resolved { "" } else { " (beyond what the step resolves)" };
+                    let doubt = if line.is_resolved { "" } else { " (not resolved by the step)" };
                     format!("{:+.3} Hz {:.4} mm{doubt}", line.frequency_hz, line.amplitude * 1e3)
                 })
                 .collect();
@@ -259,4 +259,29 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         provenance.hydraulic_passes
     )?;
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_scenario::preset;
+
+    use super::*;
+
+    #[test]
+    fn a_summary_has_equilibrium_statistics_errors_and_cost() {
+        let mut scenario = preset("paper-200m").unwrap();
+        for (path, value) in [
+            ("accuracy", json!("draft")),
+            ("duration", json!(0.2)),
+            ("recording.orbit_window", json!({"from": 0.1, "to": 0.2})),
+            ("recording.spectrum_windows", json!([])),
+        ] {
+            scenario = scenario.with(path, value).unwrap();
+        }
+        let mut computed = compute(&scenario, &Control::new()).unwrap();
+        computed.provenance.statics_wall_time = 0.05;
+        let run = computed.provenance.run.as_mut().unwrap();
+        (run.transient_wall_time, run.transient_cpu_time) = (1.0, 0.5);
+        insta::assert_snapshot!(summary_text(&scenario, &computed).unwrap());
+    }
 }

@@ -1,4 +1,4 @@
-//! Submitting a sweep, and adding points to one.
+//! Submission of sweeps, and of further points.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -41,26 +41,26 @@ pub(crate) struct SubmitArguments {
     /// them.
     #[arg(long, value_name = "SHARE_OR_NUMBER")]
     verify: Option<f64>,
-    /// A name for people.
+    /// Name of the sweep.
     #[arg(long)]
     name: Option<String>,
-    /// Owner, whose share of the workers it counts against.
+    /// Owner of the sweep, whose share of the workers it uses.
     #[arg(long, env = "DRILLSWEEP_OWNER")]
     owner: Option<String>,
-    /// A word to find the sweep by; may be given again.
+    /// Tag of the sweep; may be given again.
     #[arg(long = "tag", value_name = "TAG")]
     tags: Vec<String>,
     /// Use of results that are stored already: use them (reuse), recompute them (refresh), or use them and compute nothing
     /// (only).
     #[arg(long, default_value = "reuse", value_parser = ["reuse", "refresh", "only"])]
     cache: String,
-    /// Higher goes first among the sweeps of one owner: -10 to 10.
+    /// Priority among the sweeps of one owner, higher first: -10 to 10.
     #[arg(long, allow_negative_numbers = true)]
     priority: Option<i32>,
-    /// A key of your choice, such as a UUID: the same request with the same key is one sweep, however often it is sent.
+    /// Idempotency key, such as a UUID: repeated requests with the same key make one sweep.
     #[arg(long)]
     idempotency_key: Option<String>,
-    /// Print what the request would become (with --json its plan, too), and store nothing.
+    /// Print the points of the request with estimates (with --json also its plan), and store nothing.
     #[arg(long)]
     dry_run: bool,
     /// Return at once instead of watching the sweep.
@@ -71,7 +71,7 @@ pub(crate) struct SubmitArguments {
     json: bool,
 }
 
-/// Which points.
+/// Points of a sweep.
 #[derive(Args)]
 pub(crate) struct DesignArguments {
     /// Flow rates in m3/s: `0.01,0.04,0.06` or `from:to:count`.
@@ -81,23 +81,23 @@ pub(crate) struct DesignArguments {
     #[arg(long, value_name = "KG_PER_M3", value_parser = parse_axis)]
     mud_density: Option<Axis>,
     /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
-    /// `contact.stiffness=1e5:1e7:5:log`; with the designs that draw, `from:to` or `from:to:log`.
+    /// `contact.stiffness=1e5:1e7:5:log`; with the designs `latin_hypercube` and `sobol`, `from:to` or `from:to:log`.
     #[arg(long, value_name = "PATH=VALUES", value_parser = parse_named_axis)]
     axis: Vec<(String, Axis)>,
-    /// How points are made from the axes.
+    /// Design that makes points from the axes.
     #[arg(
         long,
         default_value = "grid",
         value_parser = PossibleValuesParser::new(["grid", "zip", "latin_hypercube", "sobol"]).try_map(design)
     )]
     design: Design,
-    /// Number of points of a design that draws.
+    /// Number of points of the designs `latin_hypercube` and `sobol`.
     #[arg(long, value_name = "NUMBER")]
     samples: Option<u32>,
-    /// Seed of a design that draws.
+    /// Seed of the designs `latin_hypercube` and `sobol`.
     #[arg(long)]
     seed: Option<u64>,
-    /// Points at the start of the Sobol sequence to skip: as many as a sweep of the same seed has already.
+    /// Number of points to skip at the start of the Sobol sequence: those that a sweep of the same seed has already.
     #[arg(long, value_name = "NUMBER")]
     skip: Option<u32>,
 }
@@ -106,7 +106,7 @@ pub(crate) struct DesignArguments {
 pub(crate) struct AppendArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     #[command(flatten)]
     design: DesignArguments,
@@ -194,7 +194,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     }
     let sweep = if arguments.detach { sweep } else { follow(&client, &sweep.id)? };
     if let Some(verification) = &sweep.verification {
-        // To the log: what is printed is the identifier alone, for scripts.
+        // To the log: standard output has the identifier alone, for scripts.
         tracing::info!("{}", verification_line(verification));
     }
     warn_of_bias(&sweep);
@@ -207,7 +207,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> anyhow::Result<()> {
     if arguments.detach { Ok(()) } else { check(&sweep) }
 }
 
-/// Tells how to go on, on standard error: standard output has the identifier alone, for scripts.
+/// Prints the next commands to standard error: standard output has the identifier alone, for scripts.
 fn hints(client: &Client, sweep: &Sweep) -> std::io::Result<()> {
     let (id, server) = (&sweep.id, client.server());
     let at = if server == DEFAULT_SERVER { String::new() } else { format!(" --server {server}") };
@@ -256,7 +256,7 @@ impl DryRun {
             None => write!(text, "\nprocessor time is not known before a worker has measured its machine"),
         };
         if let Some(time) = self.wall_time {
-            let _ = write!(text, ", {} s with the workers there are", number(time.ceil()));
+            let _ = write!(text, ", {} s with the present workers", number(time.ceil()));
         }
         let [tables, memory] = [self.table_bytes, self.memory_bytes].map(megabytes);
         let _ = write!(text, "\n{tables} of tables before compression, {memory} of memory a worker");
@@ -286,7 +286,7 @@ impl DryRun {
     }
 }
 
-/// Logs what can be simulated but is probably not meant.
+/// Logs warnings on requests that are valid but probably not meant.
 fn warn(sweep: &Sweep) {
     for warning in &sweep.warnings {
         tracing::warn!("{}: {}", warning.pointer.as_deref().unwrap_or_default(), warning.detail);
@@ -324,5 +324,32 @@ fn parse_axis(text: &str) -> anyhow::Result<Axis> {
             Ok(Axis::Range { from: number(from)?, to: number(to)?, count, scale })
         }
         _ => bail!("write a list such as 0.01,0.04 or a range from:to:count, got {text:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_dry_run_is_a_table_with_estimates() {
+        let point = |ordinal: u32| json!({"ordinal": ordinal, "parameters": {"flow_rate": 0.01, "contact.friction": 0.3}, "key": "k"});
+        let dry_run = |points: u32, more: Value| {
+            let mut answer = json!({
+                "total": points, "known": 0, "table_bytes": 123_456, "memory_bytes": 7_000_000,
+                "points": (1..=points).map(point).collect::<Vec<_>>(),
+            });
+            answer.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+            DryRun::deserialize(&answer).unwrap().text()
+        };
+        let warning =
+            json!({"pointer": "/set/accuracy", "detail": "the step is longer than a period of the contact"});
+        let verified = json!({
+            "known": 1, "cpu_time": 1234.5, "wall_time": 310.2, "verification": {"total": 1, "known": 0, "points": []},
+            "warnings": [warning],
+        });
+        insta::assert_snapshot!([dry_run(2, verified), dry_run(52, json!({}))].join("\n\n"));
     }
 }

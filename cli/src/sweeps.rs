@@ -1,12 +1,12 @@
-//! Sweeps that a server has: listing, showing, changing, pausing, cancelling and retrying them; and how the service itself
-//! stands.
+//! Sweeps of a server: listing, showing, changing, pausing, cancelling and retrying them; and the state of the service
+//! itself.
 
 use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_api::{
-    FailureList, PointCounts, PointDetail, Queue, Sweep, SweepDeletion, SweepList, SweepPatch,
-    SweepVerification, WorkerList,
+    FailureList, PointCounts, PointDetail, PointRow, Queue, Sweep, SweepDeletion, SweepList, SweepPatch,
+    SweepVerification, Worker, WorkerList,
 };
 use drillsweep_quantity::unit;
 use jiff::{SignedDuration, Timestamp};
@@ -34,7 +34,7 @@ pub(crate) struct ListArguments {
     /// Only sweeps with this tag.
     #[arg(long)]
     tag: Option<String>,
-    /// At most so many, the newest first.
+    /// Largest number of sweeps, the newest first.
     #[arg(long, value_name = "NUMBER", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     limit: u32,
     /// Print JSON.
@@ -52,7 +52,7 @@ pub(crate) struct FailuresArguments {
     /// Only points that failed in this way.
     #[arg(long, value_parser = ["physical", "infrastructure", "crash", "timeout", "cancelled"])]
     class: Option<String>,
-    /// At most so many, the latest first.
+    /// Largest number of points, the latest first.
     #[arg(long, value_name = "NUMBER", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=500))]
     limit: u32,
     /// Print JSON.
@@ -64,7 +64,7 @@ pub(crate) struct FailuresArguments {
 pub(crate) struct ShowArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     /// One of its points, from 1.
     point: Option<u32>,
@@ -77,7 +77,7 @@ pub(crate) struct ShowArguments {
 pub(crate) struct SweepArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     /// Print the sweep as JSON.
     #[arg(long)]
@@ -106,6 +106,11 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     if arguments.json {
         return print_json(&page);
     }
+    print(&list_text(&page));
+    Ok(())
+}
+
+fn list_text(page: &SweepList) -> String {
     let row = |sweep: &Sweep| {
         vec![
             sweep.id.clone(),
@@ -121,11 +126,12 @@ pub(crate) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
     };
     let rows: Vec<Vec<String>> = page.sweeps.iter().map(row).collect();
     let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name", "tags"];
-    print(&columns(&header, &rows, numbers_in(&[2, 3, 4])));
-    if page.next.is_some() {
-        print("older ones are left out; --limit shows more");
-    }
-    Ok(())
+    with_remainder(columns(&header, &rows, numbers_in(&[2, 3, 4])), page.next.is_some())
+}
+
+/// A page's table, with a note if the service has older rows.
+fn with_remainder(table: String, has_older: bool) -> String {
+    if has_older { table + "\nolder ones are omitted; --limit shows more" } else { table }
 }
 
 /// Prints the failed points of all sweeps.
@@ -136,6 +142,11 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
     if arguments.json {
         return print_json(&page);
     }
+    print(&failures_text(&page));
+    Ok(())
+}
+
+fn failures_text(page: &FailureList) -> String {
     let rows: Vec<Vec<String>> = page
         .failures
         .iter()
@@ -152,11 +163,7 @@ pub(crate) fn failures(arguments: &FailuresArguments) -> anyhow::Result<()> {
         })
         .collect();
     let header = ["failed (UTC)", "sweep", "point", "attempts", "class", "error"];
-    print(&columns(&header, &rows, numbers_in(&[2, 3])));
-    if page.next.is_some() {
-        print("older ones are left out; --limit shows more");
-    }
-    Ok(())
+    with_remainder(columns(&header, &rows, numbers_in(&[2, 3])), page.next.is_some())
 }
 
 /// Prints a sweep with a line a point, or one point with its results.
@@ -166,7 +173,11 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     let path = format!("/v1/sweeps/{}", path_segment(&id));
     if let Some(number) = arguments.point {
         let point: PointDetail = client.get(&format!("{path}/points/{number}"))?;
-        return if arguments.json { print_json(&point) } else { print_point(&point) };
+        if arguments.json {
+            return print_json(&point);
+        }
+        print(&point_text(&point));
+        return Ok(());
     }
     let sweep: Sweep = client.get(&path)?;
     let points = client.points(&id)?;
@@ -178,6 +189,11 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     print(&sweep_line(&sweep));
     warn_of_bias(&sweep);
     warn_of_doubts(&client, &sweep);
+    print(&points_text(&points));
+    Ok(())
+}
+
+fn points_text(points: &[PointRow]) -> String {
     let names: Vec<&String> = points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
     let mut header = vec!["point", "state", "progress", "attempts"];
     header.extend(names.iter().map(|name| name.as_str()));
@@ -191,18 +207,17 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
                 format!("{:.0} %", 100.0 * point.progress),
                 point.attempts.to_string(),
             ];
-            row.extend(names.iter().map(|name| text(&json!(point.parameters.get(*name)))));
+            row.extend(names.iter().map(|name| cell(&json!(point.parameters.get(*name)))));
             row.push(point.error.as_ref().map_or_else(String::new, |error| error.reason.clone()));
             row
         })
         .collect();
     let last = header.len() - 1;
-    print(&columns(&header, &rows, move |column| match column {
+    columns(&header, &rows, move |column| match column {
         1 => Alignment::Left,
         column if column == last => Alignment::Left,
         _ => Alignment::Right,
-    }));
-    Ok(())
+    })
 }
 
 /// Cancels a sweep.
@@ -236,7 +251,7 @@ fn ask(arguments: &SweepArguments, verb: &str) -> anyhow::Result<()> {
 pub(crate) struct DeleteArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     /// Report what would be deleted, and delete nothing.
     #[arg(long)]
@@ -255,21 +270,25 @@ pub(crate) fn delete(arguments: &DeleteArguments) -> anyhow::Result<()> {
     if arguments.json {
         return print_json(&deletion);
     }
+    print(&deletion_text(&id, &deletion));
+    Ok(())
+}
+
+fn deletion_text(id: &str, deletion: &SweepDeletion) -> String {
     let verb = if deletion.dry_run { "would be deleted" } else { "deleted" };
-    print(&format!(
-        "{verb}: {id} with {} points; {} results of {:.1} MB are no other sweep's, and go with the next collection",
+    format!(
+        "{verb}: {id} with {} points; {} results of {:.1} MB belong to no other sweep, and are deleted by the next collection",
         deletion.points,
         deletion.results,
         deletion.bytes as f64 * 1e-6
-    ));
-    Ok(())
+    )
 }
 
 #[derive(Args)]
 pub(crate) struct ChangeArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     #[command(flatten)]
     changes: Changes,
@@ -282,25 +301,25 @@ pub(crate) struct ChangeArguments {
 #[derive(Args)]
 #[group(required = true, multiple = true)]
 struct Changes {
-    /// Its name; an empty text takes it away.
+    /// Name; an empty text removes it.
     #[arg(long)]
     name: Option<String>,
-    /// Higher goes first among the sweeps of one owner: -10 to 10.
+    /// Priority among the sweeps of one owner, higher first: -10 to 10.
     #[arg(long, allow_negative_numbers = true)]
     priority: Option<i32>,
-    /// A word to find the sweep by, in place of those that it has; may be given again.
+    /// Tag of the sweep, in place of its present ones; may be given again.
     #[arg(long = "tag", value_name = "TAG")]
     tags: Vec<String>,
-    /// Take its tags away.
+    /// Remove all tags.
     #[arg(long, conflicts_with = "tags")]
     no_tags: bool,
     /// Keep the sweep and all that belongs to it, whatever its age.
     #[arg(long)]
     pin: bool,
-    /// Let it expire like others.
+    /// Remove the pin: the sweep expires like others.
     #[arg(long, conflicts_with = "pin")]
     unpin: bool,
-    /// When it is deleted, from now on: days as `90d`, hours as `12h`, or `never`.
+    /// Time until it is deleted: days as `90d`, hours as `12h`, or `never`.
     #[arg(long)]
     expires: Option<Lifetime>,
 }
@@ -343,10 +362,11 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
     if arguments.json {
         return print_json(&json!({ "queue": queue, "workers": workers }));
     }
-    print(&format!(
-        "queue: {} waiting, {} paused, {} waiting for a retry, {} running",
-        queue.queued, queue.paused, queue.waiting_for_retry, queue.running
-    ));
+    print(&status_text(&queue, workers));
+    Ok(())
+}
+
+fn status_text(queue: &Queue, workers: Vec<Worker>) -> String {
     let rows: Vec<Vec<String>> = workers
         .into_iter()
         .map(|worker| {
@@ -355,11 +375,17 @@ pub(crate) fn status(arguments: &StatusArguments) -> anyhow::Result<()> {
         })
         .collect();
     let header = ["worker", "host", "process", "version", "physics", "last seen (UTC)"];
-    print(&columns(&header, &rows, numbers_in(&[2, 4])));
-    Ok(())
+    format!(
+        "queue: {} waiting, {} paused, {} waiting for a retry, {} running\n{}",
+        queue.queued,
+        queue.paused,
+        queue.waiting_for_retry,
+        queue.running,
+        columns(&header, &rows, numbers_in(&[2, 4]))
+    )
 }
 
-/// A sweep in one line, and in further ones what verifying some of its points has shown, and what its queued points wait for.
+/// A sweep in one line, with further ones for the verification of its points and for the reason why queued points wait.
 pub(crate) fn sweep_line(sweep: &Sweep) -> String {
     let counts = &sweep.counts;
     let mut line = format!("{} {}: {} points", sweep.id, sweep.state.as_str(), counts.total);
@@ -374,7 +400,7 @@ pub(crate) fn sweep_line(sweep: &Sweep) -> String {
     line
 }
 
-/// How far the points are verified, and the worst bias of orbit size.
+/// Number of verified points, and the worst bias of orbit size.
 pub(crate) fn verification_line(verification: &SweepVerification) -> String {
     let counts = &verification.counts;
     let mut line = format!("verified by the reference: {} of {}", counts.succeeded, counts.total);
@@ -406,7 +432,7 @@ fn write_counts(line: &mut String, counts: &[(u64, &str)]) {
     }
 }
 
-/// Warns where verifying points has shown biases beyond what the accuracy promises.
+/// Warns of biases beyond the accuracy's promise, if points were verified.
 pub(crate) fn warn_of_bias(sweep: &Sweep) {
     for warning in sweep.verification.iter().flat_map(|verification| &verification.warnings) {
         tracing::warn!("{warning}");
@@ -440,7 +466,7 @@ fn doubts(columns: &Value) -> Vec<String> {
     let found = |is_it: &dyn Fn(&usize) -> bool, words: &str| {
         const NAMED: usize = 10;
         let rows: Vec<usize> = (0..points).filter(is_it).collect();
-        let named: Vec<String> = rows.iter().take(NAMED).map(|&row| text(&columns["ordinal"][row])).collect();
+        let named: Vec<String> = rows.iter().take(NAMED).map(|&row| cell(&columns["ordinal"][row])).collect();
         let more = if rows.len() > NAMED { ", ..." } else { "" };
         (!rows.is_empty())
             .then(|| format!("{} of {points} points {words}: {}{more}", rows.len(), named.join(", ")))
@@ -454,28 +480,28 @@ fn doubts(columns: &Value) -> Vec<String> {
     .collect()
 }
 
-fn print_point(point: &PointDetail) -> anyhow::Result<()> {
-    print(&format!("point {} {}", point.row.ordinal, point.row.state));
+fn point_text(point: &PointDetail) -> String {
+    let mut text = format!("point {} {}\n", point.row.ordinal, point.row.state);
     if let Some(error) = json!(point.row.error).as_object() {
         for (name, value) in error {
-            print(&format!("  {name}: {}", text(value)));
+            let _ = writeln!(text, "  {name}: {}", cell(value));
         }
     }
     let parameters = point.row.parameters.iter().map(|(name, value)| (name, json!(value)));
     let summary = point.summary.iter().flatten().map(|(name, value)| (name, value.clone()));
     let row = |(name, value): (&String, Value)| {
         let unit = unit(name).filter(|unit| *unit != "1").unwrap_or_default();
-        vec![name.clone(), text(&value), unit.to_owned()]
+        vec![name.clone(), cell(&value), unit.to_owned()]
     };
     let rows: Vec<Vec<String>> = parameters.chain(summary).map(row).collect();
-    print(&columns(&["quantity", "value", "unit"], &rows, numbers_in(&[1])));
+    text.push_str(&columns(&["quantity", "value", "unit"], &rows, numbers_in(&[1])));
     let provenance = point.provenance.iter().flatten();
     let provenance: Vec<Vec<String>> =
-        provenance.map(|(name, value)| vec![name.clone(), text(value)]).collect();
+        provenance.map(|(name, value)| vec![name.clone(), cell(value)]).collect();
     if !provenance.is_empty() {
-        print(&columns(&["provenance", ""], &provenance, numbers_in(&[])));
+        let _ = write!(text, "\n{}", columns(&["provenance", ""], &provenance, numbers_in(&[])));
     }
-    Ok(())
+    text
 }
 
 fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
@@ -487,7 +513,7 @@ fn numbers_in(right: &'static [usize]) -> impl Fn(usize) -> Alignment {
     |column| if right.contains(&column) { Alignment::Right } else { Alignment::Left }
 }
 
-fn text(value: &Value) -> String {
+fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
@@ -517,7 +543,8 @@ fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String
 #[cfg(test)]
 mod tests {
     use drillsweep_api::view::verification::WorstBias;
-    use drillsweep_api::{SweepLinks, WaitingFor};
+    use drillsweep_api::{PointLinks, SweepLinks, WaitingFor};
+    use drillsweep_scenario::preset;
 
     use super::*;
 
@@ -555,6 +582,77 @@ mod tests {
     fn a_line_names_only_the_states_that_occur() {
         let counts = PointCounts { total: 3, running: 1, succeeded: 2, ..PointCounts::default() };
         assert_eq!(sweep_line(&sweep(counts)), "a running: 3 points, 2 succeeded, 1 running");
+    }
+
+    fn point(ordinal: u32, state: &str, more: &Value) -> Value {
+        let mut point = json!({
+            "ordinal": ordinal, "state": state, "parameters": {"flow_rate": 0.01 * f64::from(ordinal), "mud_density": 1200.0},
+            "progress": 1.0, "attempts": 1, "links": PointLinks::new("a", ordinal), "key": "k",
+            "scenario": preset("paper-200m"),
+        });
+        point.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        point
+    }
+
+    fn failure() -> Value {
+        json!({"error": {"class": "physical", "reason": "no equilibrium: Newton's method does not converge"}})
+    }
+
+    fn read<T: serde::de::DeserializeOwned>(value: Value) -> T {
+        serde_json::from_value(value).unwrap()
+    }
+
+    #[test]
+    fn sweeps_are_listed_in_columns() {
+        let mut tagged = sweep(PointCounts { total: 120, succeeded: 7, failed: 1, ..PointCounts::default() });
+        tagged.name = Some("flow and density".to_owned());
+        tagged.tags = read(json!(["campaign-7", "draft"]));
+        let sweeps = vec![tagged, sweep(PointCounts { total: 1, ..PointCounts::default() })];
+        insta::assert_snapshot!(list_text(&SweepList { sweeps, next: Some("cursor".to_owned()) }));
+    }
+
+    #[test]
+    fn failed_points_are_listed_in_columns() {
+        let mut failed = point(2, "failed", &failure());
+        for (name, value) in [("sweep", "a"), ("owner", "anne"), ("at", "2026-01-01T00:00:00.5Z")] {
+            failed[name] = value.into();
+        }
+        insta::assert_snapshot!(failures_text(&read(json!({ "failures": [failed] }))));
+    }
+
+    #[test]
+    fn points_are_listed_in_columns() {
+        let running = point(1, "running", &json!({"progress": 0.426}));
+        let points = [running, point(2, "failed", &failure()), point(11, "succeeded", &json!({}))];
+        insta::assert_snapshot!(points_text(&points.map(read)));
+    }
+
+    #[test]
+    fn a_point_is_shown_with_units_and_provenance() {
+        let summary = json!({"contact_count": 31, "tension_top": 123456.789, "motion_regime": "regular", "settled_at": null});
+        let provenance = json!({"version": "0.1.0", "transient_cpu_time": 12.3456789});
+        let more = json!({"summary": summary, "provenance": provenance});
+        let succeeded = point_text(&read(point(1, "succeeded", &more)));
+        let failed = point_text(&read(point(2, "failed", &failure())));
+        insta::assert_snapshot!(format!("{succeeded}\n\n{failed}"));
+    }
+
+    #[test]
+    fn queue_and_workers_are_shown() {
+        let queue = read(json!({"queued": 5, "paused": 4, "waiting_for_retry": 3, "running": 2}));
+        let worker = json!({
+            "id": "w-1", "host": "node7", "process": 4711, "version": "0.1.0", "physics_version": 11, "started": "2026-01-01T00:00:00Z",
+            "seen": "2026-01-01T01:00:00Z",
+        });
+        insta::assert_snapshot!(status_text(&queue, vec![read(worker)]));
+    }
+
+    #[test]
+    fn a_deletion_reports_freed_results() {
+        let deletion =
+            |dry_run: bool| read(json!({"dry_run": dry_run, "points": 12, "results": 7, "bytes": 1_234_567}));
+        let texts = [true, false].map(|dry_run| deletion_text("a", &deletion(dry_run)));
+        insta::assert_snapshot!(texts.join("\n"));
     }
 
     #[test]

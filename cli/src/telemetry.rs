@@ -1,4 +1,4 @@
-//! Traces of requests and points to an OpenTelemetry collector, over OTLP by HTTP, where one is named.
+//! Traces of requests and points to an OpenTelemetry collector, over OTLP by HTTP, if one is named.
 
 use std::time::Duration;
 
@@ -18,13 +18,13 @@ use tracing_subscriber::registry::LookupSpan;
 /// The address of the collector; without it nothing is exported.
 const ENDPOINT: &str = "OTEL_EXPORTER_OTLP_ENDPOINT";
 
-/// How long a collector may take to answer.
+/// Timeout of a collector.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Spans that are exported, whatever the log shows: this program's own.
 const SPANS: (&str, Level) = ("drillsweep", Level::INFO);
 
-/// The way to the collector. Dropped, it sends what is left.
+/// The way to the collector. Dropped, it sends the rest.
 pub(crate) struct Telemetry {
     provider: Option<SdkTracerProvider>,
 }
@@ -33,7 +33,7 @@ impl Telemetry {
     /// Traces of a service, if there is a collector to send them to and this process is a service.
     ///
     /// # Errors
-    /// When the collector's address is none.
+    /// The collector's address is invalid.
     pub(crate) fn new(service: Option<&'static str>) -> anyhow::Result<Self> {
         let Some(service) = service.filter(|_| std::env::var_os(ENDPOINT).is_some()) else {
             return Ok(Self { provider: None });
@@ -43,7 +43,7 @@ impl Telemetry {
             .with_protocol(Protocol::HttpBinary)
             .with_http_client(Client::new())
             .build()
-            .with_context(|| format!("traces cannot be sent to what {ENDPOINT} says"))?;
+            .with_context(|| format!("traces cannot be sent to the address in {ENDPOINT}"))?;
         let provider = SdkTracerProvider::builder()
             .with_batch_exporter(exporter)
             .with_resource(Resource::builder().with_service_name(service).build())

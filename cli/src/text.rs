@@ -1,9 +1,9 @@
-//! Text for people: columns, numbers, and nothing that a terminal would obey.
+//! Text for people: columns, numbers, and no control characters.
 
 use std::borrow::Cow;
 use std::fmt::{Display, Write as _};
 
-/// To which side a column's texts go.
+/// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Alignment {
     Left,
@@ -59,9 +59,9 @@ pub(crate) fn count(number: impl Display, of: &str) -> String {
     format!("{number} {of}{plural}")
 }
 
-/// A text with its control characters but line ends and tabs as `\u001b`, which a terminal shows and JSON reads as the same
-/// character: names and messages of others are printed, and must not move the cursor, rename the window, break lines or turn around
-/// what stands beside them.
+/// Text with its control characters, except line ends and tabs, as `\u001b`, which a terminal shows and JSON reads as the same
+/// character: names and messages of others are printed, and must not move the cursor, rename the window, break lines or reverse
+/// the text next to them.
 pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     let is_obeyed = |character: char| match character {
         '\n' | '\t' => false,

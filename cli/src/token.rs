@@ -15,7 +15,7 @@ use crate::print;
 
 #[derive(Subcommand)]
 pub(crate) enum TokenCommand {
-    /// Make a token and print it. It is shown this once; the database keeps only its hash.
+    /// Make a token and print it. It is shown only once; the database keeps its hash.
     Create(CreateArguments),
     /// List the tokens, without their texts.
     List {
@@ -25,7 +25,7 @@ pub(crate) enum TokenCommand {
         #[arg(long)]
         json: bool,
     },
-    /// Make a token void, at once and for good.
+    /// Revoke a token, at once and for good.
     Revoke {
         #[command(flatten)]
         data: DataArguments,
@@ -44,10 +44,10 @@ pub(crate) struct CreateArguments {
     /// Permissions; each scope includes those before it.
     #[arg(long, value_enum, default_value = "submit")]
     scope: Scope,
-    /// A name for people, such as the machine that it is for.
+    /// Name of the token, such as that of the machine that uses it.
     #[arg(long)]
     name: Option<String>,
-    /// How long it is valid: a time span such as `90d` or `12h`, or `never` for without end.
+    /// Validity: a time span such as `90d` or `12h`, or `never` for no end.
     #[arg(long, value_name = "TIME_SPAN", default_value = "365d")]
     expires: Lifetime,
 }
@@ -66,7 +66,7 @@ enum Scope {
 const SHORTEST: Duration = Duration::from_secs(1);
 const LONGEST: Duration = Duration::from_secs(36_500 * 86_400);
 
-/// How long something lasts \[ms\]; none means without end.
+/// Time span \[ms\]; `None` means without end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Lifetime(pub(crate) Option<i64>);
 

@@ -1,4 +1,4 @@
-//! Watching a sweep until it is complete.
+//! Progress of a sweep until it is complete.
 
 use anyhow::ensure;
 use clap::Args;
@@ -13,7 +13,7 @@ use crate::sweeps::{sweep_line, warn_of_bias, warn_of_doubts};
 pub(crate) struct WatchArguments {
     #[command(flatten)]
     server: ServerArguments,
-    /// The sweep: its identifier, the beginning of it, or its name.
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
     sweep: String,
     /// Print the complete sweep as JSON.
     #[arg(long)]
@@ -34,8 +34,8 @@ pub(crate) fn watch(arguments: &WatchArguments) -> anyhow::Result<()> {
     check(&sweep)
 }
 
-/// Follows a sweep with a progress bar and returns it as it is when every point is final. A server that is away for
-/// a while, as during a restart, is waited for.
+/// Follows a sweep with a progress bar and returns it once every point is final. Requests are retried while the server
+/// does not answer, as during a restart.
 pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
     let path = format!("/v1/sweeps/{}", path_segment(id));
     let bar = ProgressBar::new(1000);
@@ -67,7 +67,7 @@ pub(crate) fn follow(client: &Client, id: &str) -> anyhow::Result<Sweep> {
     }
 }
 
-/// Warns where queued points wait for a worker that is not there.
+/// Warns if queued points wait for a worker that is not there.
 pub(crate) fn warn_of_waiting(sweep: &Sweep) {
     if let Some(waiting) = &sweep.waiting_for {
         tracing::warn!("{}", waiting.reason);

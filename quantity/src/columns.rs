@@ -3,7 +3,7 @@
 use crate::definition::Quantity;
 use crate::units;
 
-/// Defines the quantities with what each of them is, and the list of them all. `-` in place of units says that there are none.
+/// Defines the quantities with their meanings, and the list of them all. `-` in place of units means none.
 macro_rules! quantities {
     ($(#[doc = $meaning:literal] $constant:ident: $name:literal, $symbol:literal, $units:tt, $label:literal;)*) => {
         $(
@@ -37,7 +37,7 @@ quantities! {
     // Time and frequency.
     /// Simulated time.
     TIME: "time", "t", TIME, "time";
-    /// Simulated time that the run took: the scenario's duration, or less where its statistics settled before.
+    /// Simulated time that the run took: the scenario's duration, or less if its statistics settled before.
     SIMULATED_TIME: "simulated_time", "", TIME, "simulated time";
     /// Start of the spectrum window, included.
     FROM: "from", "", TIME, "from";
@@ -55,11 +55,11 @@ quantities! {
     MEASURED_DEPTH_BOTTOM: "measured_depth_bottom", "", DEPTH, "measured depth bottom";
     /// Vertical distance below the top of the string.
     TRUE_VERTICAL_DEPTH: "true_vertical_depth", "", DEPTH, "true vertical depth";
-    /// How far north of the top of the string.
+    /// Distance north of the top of the string.
     NORTH: "north", "", DEPTH, "north";
-    /// How far east of the top of the string.
+    /// Distance east of the top of the string.
     EAST: "east", "", DEPTH, "east";
-    /// Where the low side of the hole lies, from u towards v.
+    /// Angle of the low side of the hole, from u towards v.
     LOW_SIDE_ANGLE: "low_side_angle", "", ANGLE, "low side angle";
     /// Outer diameter of the string.
     OUTER_DIAMETER: "outer_diameter", "D_o", WIDTH, "outer diameter";
@@ -105,7 +105,7 @@ quantities! {
     NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
     /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
     EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
-    /// Torque in the string, G I_p theta_z', negative where it opposes clockwise rotation; at a node that of the element above it, at the first node below it.
+    /// Torque in the string, G I_p theta_z', negative if it opposes clockwise rotation; at a node that of the element above it, at the first node below it.
     TORQUE: "torque", "T_0", TORQUE, "torque";
     /// Mean distance of the element's nodes from the hole's axis over the clearance of its body, at most 1.
     ECCENTRICITY: "eccentricity", "e", RATIO, "eccentricity";
@@ -173,7 +173,7 @@ quantities! {
     CONTACT_TIME: "contact_time", "", TIME, "contact time";
     /// Largest normal force of the wall.
     LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest normal force";
-    /// How often the node came to stick; in a summary all nodes together.
+    /// Number of slip-to-stick transitions of the node; in a summary of all nodes together.
     CAPTURE_COUNT: "capture_count", "", -, "capture count";
     /// Time that the node stuck.
     STICK_TIME: "stick_time", "", TIME, "stick time";
@@ -203,7 +203,7 @@ quantities! {
     RESIDUAL: "residual", "", ENERGY, "residual";
     /// Imbalance of the energy ledger at the end of the run.
     ENERGY_RESIDUAL: "energy_residual", "", ENERGY, "energy residual";
-    /// The residual over the net work of the contacts; absent where that is no more than rounding.
+    /// The residual over the net work of the contacts; absent if that is no more than rounding.
     ENERGY_RESIDUAL_RATIO: "energy_residual_ratio", "", RATIO, "energy residual ratio";
 
     // Spectra.
@@ -241,45 +241,45 @@ quantities! {
     PEAK_TO_PEAK_V: "peak_to_peak_v", "", WIDTH, "peak to peak v";
     /// Root mean square motion at frequencies above 100 Hz.
     HIGH_FREQUENCY_RMS: "high_frequency_rms", "", WIDTH, "high frequency rms";
-    /// Kind of motion over the window of the statistics: regular or irregular once it has settled, not_settled by the end of the longest run, fixed where the window was chosen beforehand.
+    /// Kind of motion over the window of the statistics: regular or irregular once it has settled, not_settled by the end of the longest run, fixed if the window was chosen beforehand.
     MOTION_REGIME: "motion_regime", "", -, "motion regime";
-    /// Time from which on the motion is settled; absent where it has not settled or the window is fixed.
+    /// Time from which on the motion is settled; absent if it has not settled or the window is fixed.
     SETTLED_AT: "settled_at", "", TIME, "settled at";
     /// Start of the window of the orbit statistics, included.
     STATISTICS_FROM: "statistics_from", "", TIME, "statistics from";
     /// End of the window of the orbit statistics, not included.
     STATISTICS_TO: "statistics_to", "", TIME, "statistics to";
-    /// Largest relative difference of orbit size or radius deviation between the halves of the window, over the recorded nodes; absent where the motion has settled.
+    /// Largest relative difference of orbit size or radius deviation between the halves of the window, over the recorded nodes; absent if the motion has settled.
     HALVES_DIFFER: "halves_differ", "", RATIO, "halves differ";
-    /// Frequency of the torsional mode that still grows at the end of the run; absent where none does.
+    /// Frequency of the torsional mode that still grows at the end of the run; absent if none does.
     GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "growing mode hz";
     /// Growth of that mode's amplitude while it is small.
     GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growing mode rate";
     /// Lower base frequency of regular motion.
     BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "base frequency 1 hz";
-    /// Higher base frequency of regular motion; absent where there is one alone.
+    /// Higher base frequency of regular motion; absent if there is one alone.
     BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "base frequency 2 hz";
     /// Runs of the point, the undisturbed one among them.
     ENSEMBLE_MEMBERS: "ensemble_members", "", -, "ensemble members";
-    /// When histories of neighbouring starts first part.
+    /// Time at which histories of neighbouring starts first part.
     HISTORIES_PART_AT: "histories_part_at", "", TIME, "histories part at";
 
-    // Errors, and what limits a result.
+    // Errors and limits of a result.
     /// Frequency up to which the run's steps resolve vibrations.
     RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "resolved hz";
     /// Steps of the shortest length that left more than the tolerance.
     UNRESOLVED_STEPS: "unresolved_steps", "", -, "unresolved steps";
-    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion; absent where histories part.
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion; absent if histories part.
     ERROR_ESTIMATE: "error_estimate", "", RATIO, "error estimate";
-    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes; absent where histories part.
+    /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes; absent if histories part.
     ERROR_ESTIMATE_DISPLACEMENT: "error_estimate_displacement", "", WIDTH, "error estimate displacement";
-    /// By how much a start 1e-6 m away at the start of the orbit window is amplified until its end, or for a third of the run; absent where that run diverges.
+    /// Factor by which a start 1e-6 m away at the start of the orbit window is amplified until its end, or for a third of the run; absent if that run diverges.
     AMPLIFICATION: "amplification", "", RATIO, "amplification";
     /// Growth of the distance from such a run, from the first half of that time to the second.
     AMPLIFICATION_GROWTH: "amplification_growth", "", RATE, "amplification growth";
     /// Relative error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
     PROMISED_ERROR: "promised_error", "", RATIO, "promised error";
-    /// Estimated relative error of orbit statistics by the time steps; absent where histories part.
+    /// Estimated relative error of orbit statistics by the time steps; absent if histories part.
     TIME_ERROR: "time_error", "", RATIO, "time error";
     /// Estimated relative error of orbit size by the window: differences between the windows of regular motion, half the confidence interval of irregular; absent if the motion has not settled or the window is fixed.
     SAMPLING_ERROR: "sampling_error", "", RATIO, "sampling error";
@@ -295,7 +295,7 @@ quantities! {
     UNDAMPED_TORSION_HZ: "undamped_torsion_hz", "", FREQUENCY, "undamped torsion hz";
     /// Growth of that mode's amplitude.
     UNDAMPED_TORSION_GROWTH: "undamped_torsion_growth", "", RATE, "undamped torsion growth";
-    /// Whether the statistics of the runs from both starts differ by more than the accuracy promises; absent unless `statics.start` is `both`.
+    /// True if the statistics of the runs from both starts differ by more than the accuracy promises; absent unless `statics.start` is `both`.
     STARTS_DIFFER: "starts_differ", "", -, "starts differ";
     /// Largest difference of orbit sizes between the runs from both starts, relative to the larger.
     STARTS_SIZE_DIFFERENCE: "starts_size_difference", "", RATIO, "size difference of starts";
@@ -303,17 +303,17 @@ quantities! {
     STARTS_DEVIATION_DIFFERENCE: "starts_deviation_difference", "", RATIO, "deviation difference of starts";
     /// Node with the largest difference of orbit sizes between the runs from both starts.
     STARTS_DIFFERENCE_NODE: "starts_difference_node", "", -, "node of the starts' difference";
-    /// Whether small motions about the equilibrium decay, with a constant torque on bit; absent where none was found to grow but not all were found. Without `recording.stability` only false, for a string that leaves its equilibrium without vibrating about it.
+    /// True if small motions about the equilibrium decay, with a constant torque on bit; absent if none was found to grow but not all were found. Without `recording.stability` only false, for a string that leaves its equilibrium without vibrating about it.
     STABLE: "stable", "", -, "stable";
-    /// How small motions about the equilibrium grow.
+    /// Kind of growth of small motions about the equilibrium.
     INSTABILITY: "instability", "", -, "instability";
     /// Growth rate of the mode that grows fastest.
     INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
     /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
-    /// Where the point, or its reference run, stands.
+    /// State of the point, or of its reference run.
     STATE: "state", "", -, "state";
-    /// Why the point failed.
+    /// Reason of the point's failure.
     ERROR: "error", "", -, "error";
     /// Simulated time at which the point failed.
     ERROR_TIME: "error_time", "", TIME, "error time";
@@ -337,7 +337,7 @@ quantities! {
     WITHOUT_EFFECT: "without_effect", "", -, "without effect";
     /// Time integration method.
     INTEGRATOR: "integrator", "", -, "integrator";
-    /// Time step; the longest one where steps adapt.
+    /// Time step; the longest one if steps adapt.
     STEP: "step", "h", TIME, "step";
     /// Step of the RK4 run that speeds are compared with.
     RK4_STEP: "rk4_step", "", TIME, "rk4 step";
@@ -411,8 +411,8 @@ quantities! {
     MESH_ERROR: "mesh_error", "", RATIO, "mesh error";
     /// Relative error of orbit size by mesh and time steps together; of a result by sampling too, as independent parts, and absent if one of them is not known.
     WHOLE_ERROR: "whole_error", "", RATIO, "whole error";
-    /// Whether the accuracy's promise is kept.
+    /// Verdict on the accuracy's promise.
     PROMISE: "promise", "", -, "promise";
-    /// Why the run failed.
+    /// Reason of the run's failure.
     FAILURE: "failure", "", -, "failure";
 }

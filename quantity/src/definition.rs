@@ -7,7 +7,7 @@ use crate::units::Units;
 pub struct Quantity {
     /// Its name in columns; of a field of a scenario its path without indices, such as `string.sections.length`.
     pub name: &'static str,
-    /// Its symbol in the equations of the model; empty where it has none.
+    /// Its symbol in the equations of the model; empty if it has none.
     pub symbol: &'static str,
     /// Its units; none of names, and of numbers of things.
     pub units: Option<&'static Units>,

@@ -34,13 +34,13 @@ pub struct QuantityEntry {
     pub field: Option<UnitEntry>,
 }
 
-/// A unit beside the one in which a quantity is served.
+/// A further unit of a served quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct UnitEntry {
-    /// How it is written, such as `mm`.
+    /// Symbol, such as `mm`.
     pub unit: &'static str,
-    /// How many of the served unit one of it is: 0.001 for a millimetre of a length in metres.
+    /// Size in the served unit: 0.001 for a millimetre of a length in metres.
     pub size: f64,
 }
 

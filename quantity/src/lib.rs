@@ -1,7 +1,7 @@
-//! The vocabulary of results and scenarios: what the name of a column or of a field stands for.
+//! The vocabulary of results and scenarios: meanings of the names of columns and fields.
 //!
 //! A [`Quantity`] has a name, a symbol, units and a label. Names of columns are put together from it here, and taken apart here: a
-//! number of a node (`u_49`), a spectrum window (`line_amplitude_49_w1`), what became of it in an ensemble or beside a reference
+//! number of a node (`u_49`), a spectrum window (`line_amplitude_49_w1`), its statistic over an ensemble or relative to a reference
 //! (`spread_`, `ensemble_mean_`, `reference_`, `bias_`).
 
 mod all;

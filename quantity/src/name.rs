@@ -14,7 +14,7 @@ use crate::units::{self, Units};
 pub struct Name<'n> {
     /// Its quantity.
     pub quantity: &'static Quantity,
-    /// Which of the columns of this quantity, where it has several: `orbit_size_2_percent` of `cost_cpu_time`.
+    /// Distinction between several columns of this quantity: `orbit_size_2_percent` of `cost_cpu_time`.
     pub detail: Option<&'n str>,
     /// Derivation of the quantity.
     pub variant: Variant,
@@ -50,7 +50,7 @@ impl<'n> Place<'n> {
         }
     }
 
-    /// How a depth \[m\] is written in names of columns: `57_7m` for 57.7 m.
+    /// Depth \[m\] as names of columns have it: `57_7m` for 57.7 m.
     pub fn of_depth(depth: f64) -> String {
         // Rounding may have left the top at -0.
         format!("{}m", depth.abs()).replace('.', "_")
@@ -140,7 +140,7 @@ static BY_NAME: LazyLock<HashMap<&'static str, &'static Quantity>> =
     LazyLock::new(|| all().map(|quantity| (quantity.name, quantity)).collect());
 
 impl<'n> Name<'n> {
-    /// Takes a name apart; none where it is of no quantity of the vocabulary.
+    /// Takes a name apart; none if it is of no quantity of the vocabulary.
     pub fn parse(name: &'n str) -> Option<Self> {
         let alone =
             |quantity| Name { quantity, detail: None, variant: Variant::Value, place: None, window: None };
@@ -196,7 +196,7 @@ impl fmt::Display for Name<'_> {
     }
 }
 
-/// The quantity of which a sweep's table has a column for each accuracy that was asked for, and which of them.
+/// The quantity of which a sweep's table has a column for each requested accuracy, with that accuracy.
 fn of_family(name: &str) -> Option<(&'static Quantity, &str)> {
     let detail = name.strip_prefix(columns::COST_CPU_TIME.name)?.strip_prefix('_')?;
     Some((&columns::COST_CPU_TIME, detail))

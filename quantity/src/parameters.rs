@@ -1,4 +1,4 @@
-//! The numeric fields of a scenario, by their paths without indices. What each of them means is said where the field is defined.
+//! Numeric fields of a scenario, by their paths without indices. The definitions of the fields have their meaning.
 
 use crate::definition::Quantity;
 use crate::units::{self, Units};

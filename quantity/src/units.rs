@@ -1,11 +1,11 @@
 //! Kinds of quantities by the units in which they are kept, shown and read.
 
-/// A unit beside the one in which a quantity is kept.
+/// A further unit of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// How it is written, such as `mm`.
+    /// Symbol, such as `mm`.
     pub symbol: &'static str,
-    /// How many of the unit in which the quantity is kept one of these is: 0.0254 for an inch of a length in metres.
+    /// Size in the unit in which the quantity is kept: 0.0254 for an inch of a length in metres.
     pub size: f64,
 }
 

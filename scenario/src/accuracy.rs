@@ -1,4 +1,4 @@
-//! How finely time is resolved.
+//! Resolution of time.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// How finely time is resolved: a preset, a tolerance, or integrator and step in full.
+/// Resolution of time: a preset, a tolerance, or integrator and step in full.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(untagged)]
@@ -24,17 +24,17 @@ pub enum Accuracy {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyTarget {
-    /// Of statistics over the windows that are read, such as the size of an orbit: 0.0001 to 0.1, usual 0.003 to 0.08. The longest
-    /// step goes with its root, so that a quarter of it costs about twice the time; from 0.01 to 0.003 it stays. Too large, and
-    /// stick-slip is inaccurate; from 0.01 down, steps also resolve torsion that velocity-weakening friction feeds, to 0.125 ms.
+    /// Tolerance on statistics over the windows, such as the size of an orbit: 0.0001 to 0.1, usual 0.003 to 0.08. The longest
+    /// step is proportional to its root, so that a quarter of it costs about twice the time; from 0.01 to 0.003 the step is the same. Too large, and
+    /// stick-slip is inaccurate; from 0.01 down, steps also resolve torsion that velocity-weakening friction excites, to 0.125 ms.
     /// It does not reduce the spread of an ensemble.
     Statistics(f64),
-    /// Of the history itself, relative to the motion, as long as histories of neighbouring starts stay together: 0.0001 to 0.1,
+    /// Tolerance on the history itself, relative to the motion, as long as histories of neighbouring starts stay together: 0.0001 to 0.1,
     /// usual 0.01 to 0.05. Steps are those of half as large a tolerance on statistics.
     Trajectory(f64),
 }
 
-/// Tolerances that can be asked for.
+/// Range of tolerances.
 pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 
 /// The tolerance that the longest step below belongs to.
@@ -44,7 +44,7 @@ const LONGEST_STEP_TOLERANCE: f64 = 0.08;
 /// the square of the step or faster, so the longest step goes with the root of the tolerance.
 const LONGEST_STEP: f64 = 8e-3;
 
-/// Factors on the lengths of the mesh `auto` that accuracies choose. Longer elements miss what they bend between contacts, whatever is allowed.
+/// Factors on the lengths of the mesh `auto` that accuracies choose. Longer elements miss bending between contacts, whatever the tolerance.
 const MESH_FACTORS: std::ops::RangeInclusive<f64> = 0.4..=1.4;
 
 /// A promised error and the tolerance that keeps it with room: smaller promises go with smaller tolerances in proportion.
@@ -70,7 +70,7 @@ impl Accuracy {
         }
     }
 
-    /// The relative error of the size of an orbit that the choice allows; absent where integrator and step are given, which
+    /// The relative error of the size of an orbit that the choice allows; absent if integrator and step are given, which
     /// promise nothing.
     pub fn statistics_tolerance(&self) -> Option<f64> {
         match *self {
@@ -82,7 +82,7 @@ impl Accuracy {
         }
     }
 
-    /// The factor on the lengths of the mesh `auto` that goes with what the choice promises: 1 at `standard`, and where it promises nothing.
+    /// Factor on the lengths of the mesh `auto` that matches the promise of the choice: 1 at `standard`, and without a promise.
     /// The error of a mesh falls with the square of its lengths (bending between contacts) or faster, so they go with the root of the error.
     pub fn mesh_factor(&self) -> f64 {
         let standard = AccuracyPreset::Standard.tolerance();
@@ -106,9 +106,9 @@ impl Accuracy {
 /// Promise of an accuracy for a run's statistics: the largest bias against the converged values, relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promise {
-    /// Of orbit sizes.
+    /// Bound on the error of orbit sizes.
     pub orbit_size: f64,
-    /// Of standard deviations of the radius.
+    /// Bound on the error of standard deviations of the radius.
     pub radius_deviation: f64,
 }
 
@@ -233,7 +233,7 @@ pub struct TimeStepping {
     pub integrator: Integrator,
     /// Step \[s\], above 0; with a tolerance the longest one. A fixed step is a whole part of the recording interval, or for
     /// `esdirk4` that times a power of two. Usual 2.5e-4 to 8e-3 for `esdirk4`, 1e-4 to 1e-3 for `generalized_alpha`, 1e-5 to 6e-5
-    /// for `rk4`. Implicit methods damp what a long step does not resolve, and cut it into up to 4096 parts where contact iterations
+    /// for `rk4`. Implicit methods damp motion that a long step does not resolve, and cut it into up to 4096 parts if contact iterations
     /// would diverge; `rk4` is refused beyond its stability limit. Below 1e-4 s implicit methods no longer damp the torsion of
     /// single elements, which velocity-weakening friction feeds unless `damping.stiffness_proportional` is above 0.
     pub step: f64,
@@ -244,13 +244,13 @@ pub struct TimeStepping {
     pub contact_sweeps: u32,
     /// Adapts the step; absent means a fixed step, which `generalized_alpha` always has. For `esdirk4` the relative error that
     /// statistics may have, 0.0001 to 0.1, usual 0.003 to 0.08; for `rk4` the local error of a lateral displacement in hole radii,
-    /// above 0 and below 0.1, usual 1e-6 to 1e-4. Too large misses sticking and impacts. Too small asks for steps that are not
+    /// above 0 and below 0.1, usual 1e-6 to 1e-4. Too large misses sticking and impacts. Too small needs steps that are not
     /// taken: `esdirk4` keeps its shortest, a 128th of the longest, and counts it in `unresolved_steps`; `rk4` fails below a
     /// millionth of it.
     #[serde(default)]
     pub tolerance: Option<f64>,
     /// Spectral radius at infinite frequency (`generalized_alpha` only), 0 to 0.95; absent means 0.8, usual 0.6 to 0.9. Smaller
-    /// values damp more, also of what a step resolves; larger ones leave unresolved frequencies undamped. One, the trapezium rule,
+    /// values damp more, also resolved motion; larger ones leave unresolved frequencies undamped. One, the trapezium rule,
     /// damps nothing, and with a fixed number of contact iterations it fails silently.
     #[serde(default)]
     pub spectral_radius: Option<f64>,
@@ -259,7 +259,7 @@ pub struct TimeStepping {
 impl TimeStepping {
     /// The adaptive method for a relative error of statistics that is promised.
     ///
-    /// The error of a method of order 4 falls faster than its tolerance: steps for 0.01 leave 0.0004 of orbit sizes where the sizes are settled,
+    /// The error of a method of order 4 falls faster than its tolerance: steps for 0.01 leave 0.0004 of orbit sizes if the sizes are settled,
     /// and are those that 0.003 is promised with.
     pub fn promising(error: f64) -> Self {
         let [promised, tolerance] = FINE;

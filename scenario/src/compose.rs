@@ -8,7 +8,7 @@ use crate::{Problem, Scenario};
 /// The scenario of a stored point: its base with its changes, both as JSON text.
 ///
 /// # Errors
-/// When either text is not what a release of the same physics version writes.
+/// Either text is not of a form that a release of the same physics version writes.
 pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
     let mut scenario = Scenario::from_json(base)?;
     let malformed = |error: serde_json::Error| Problem {
@@ -24,7 +24,7 @@ pub fn compose(base: &str, changes: &str) -> Result<Scenario, Problem> {
 }
 
 impl Scenario {
-    /// Sets a numeric field. Whole numbers are converted by the written form, which reports what is wrong with others.
+    /// Sets a numeric field. Whole numbers are converted by the written form, which reports the problems of others.
     ///
     /// # Errors
     /// A path that names no field, or a number that the field cannot hold.

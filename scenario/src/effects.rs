@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Whether a term of the model takes part: `auto` leaves it out only where it could not change a number, or where nothing is asked
-/// for that it decides; `on` and `off` are obeyed.
+/// Switch of a term of the model: `auto` leaves it out only if it cannot change a number, or decides nothing that is
+/// requested; `on` and `off` are obeyed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// The term is assembled where the scene calls for it: left out only where it could not change a number, or where
-    /// nothing is asked for that it decides.
+    /// The term is assembled if the scenario needs it: left out only if it cannot change a number, or if
+    /// it decides nothing that is requested.
     #[default]
     Auto,
     /// The term is assembled.
@@ -18,7 +18,7 @@ pub enum Switch {
     Off,
 }
 
-/// How far `auto` goes in leaving effects out: `exact` leaves out what could not change a number, `aggressive` also gyroscopic
+/// Rule by which `auto` leaves effects out: `exact` leaves out terms that cannot change a number, `aggressive` also gyroscopic
 /// moments, Coriolis terms and flow stiffness that are estimated to change frequencies by less than a thousandth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -27,7 +27,7 @@ pub enum AutoRule {
     /// Terms that could not change a number.
     #[default]
     Exact,
-    /// Gyroscopic moments, Coriolis terms and flow stiffness too where they are estimated to change frequencies by less than
+    /// Gyroscopic moments, Coriolis terms and flow stiffness too if they are estimated to change frequencies by less than
     /// a thousandth.
     Aggressive,
 }
@@ -50,7 +50,7 @@ macro_rules! effects {
         #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
         #[serde(deny_unknown_fields, default)]
         pub struct Effects {
-            /// How far `auto` goes; absent means `exact`.
+            /// Rule of `auto`; absent means `exact`.
             pub auto: AutoRule,
             $($(#[$doc])* pub $field: Switch,)*
         }
@@ -91,7 +91,7 @@ macro_rules! effects {
             /// Every effect.
             pub const ALL: ActiveEffects = ActiveEffects { $($field: true,)* };
 
-            /// Whether an effect takes part.
+            /// True if an effect is active.
             pub fn is_active(&self, effect: Effect) -> bool {
                 match effect { $(Effect::$variant => self.$field,)* }
             }
@@ -113,7 +113,7 @@ effects! {
     /// Coriolis terms of both flows; small at usual flow rates.
     fluid_coriolis / FluidCoriolis,
     /// Flow stiffness of both flows with its end term, and their centrifugal load on the curved centre line; small at usual flow
-    /// rates, and what makes fast flow buckle or flutter.
+    /// rates, and the cause of buckling or flutter under fast flow.
     flow_stiffness / FlowStiffness,
     /// Axial drag of the annular flow on the string; without it tension is too high by the drag below.
     mud_drag / MudDrag,

@@ -18,7 +18,7 @@ impl Scenario {
     /// Reads a scenario from TOML.
     ///
     /// # Errors
-    /// The first place where the text is not TOML, or the first by its fields' names where it is not a scenario; unknown fields
+    /// The first place at which the text is not TOML, or the first field, by name, that makes it no scenario; unknown fields
     /// are refused.
     pub fn from_toml(text: &str) -> Result<Self, Problem> {
         from_table(table(text)?)
@@ -27,7 +27,7 @@ impl Scenario {
     /// Reads a scenario from JSON.
     ///
     /// # Errors
-    /// The first place where the text is not JSON or, where it is, not a scenario; unknown fields are refused.
+    /// The first place at which the text is not JSON or, if it is, no scenario; unknown fields are refused.
     pub fn from_json(text: &str) -> Result<Self, Problem> {
         let _: IgnoredAny = serde_json::from_str(text).map_err(|error| not_json(&error))?;
         read(&mut serde_json::Deserializer::from_str(text))
@@ -110,7 +110,7 @@ fn read<'de, T: DeserializeOwned>(format: impl Deserializer<'de>) -> Result<T, P
     })
 }
 
-/// A message without the place that the format adds to it (` at line 3 column 7`, or a second line): the path says where.
+/// Message without the place that the format adds to it (` at line 3 column 7`, or a second line): the path is enough.
 fn without_place(message: &str) -> &str {
     let message = message.lines().next().unwrap_or_default();
     let is_place = |place: &str| {

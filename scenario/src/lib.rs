@@ -1,7 +1,7 @@
 //! A scenario: everything that decides the numbers of one run.
 //!
 //! SI units throughout; a field in another unit says so in its name (`_deg`, `_rpm`). Unknown fields are
-//! refused. The types say what can be written down; what can be simulated is checked by `drillsweep_sim::validation`.
+//! refused. The types define valid documents; `drillsweep_sim::validation` checks that they can be simulated.
 
 mod accuracy;
 mod compose;
@@ -66,24 +66,24 @@ pub struct Scenario {
     pub statics: Statics,
     /// Rayleigh damping of the structure.
     pub damping: RayleighDamping,
-    /// How finely the string is cut into elements: `"auto"` or target element lengths. Too coarse, and bending between contacts and
+    /// Mesh of the string: `"auto"` or target element lengths. Too coarse, and bending between contacts and
     /// torsion at high frequencies are wrong; too fine costs processor time in proportion to the number of elements.
     pub mesh: Mesh,
-    /// Simulated time \[s\], a whole multiple of the recording interval; where `recording.orbit_window` is `settled` the longest that a
+    /// Simulated time \[s\], a whole multiple of the recording interval; if `recording.orbit_window` is `settled` the longest that a
     /// run may take. Usual 20 to 120 with a fixed window, 300 with a settled one. Too short, and the statistics show how the run
     /// starts: torsion that friction feeds can take 100 s to swing up to stick-slip. Longer runs cost processor time in proportion.
     pub duration: f64,
     /// Data kept of the run.
     pub recording: Recording,
-    /// How finely time is resolved: a preset, a tolerance, or integrator and step in full; absent means `standard`.
+    /// Resolution of time: a preset, a tolerance, or integrator and step in full; absent means `standard`.
     #[serde(default)]
     pub accuracy: Accuracy,
-    /// Which terms of the model are assembled: `auto` (those that the scene calls for), `on` or `off`. Absent means `auto` for all.
+    /// Terms of the model that are assembled: `auto` (those that the scenario needs), `on` or `off`. Absent means `auto` for all.
     #[serde(default)]
     pub effects: Effects,
     /// Runs of the point, 1 to 64, 1 unless given: the first as it is, the others disturbed by 1e-6 m at the start. More than one
     /// gives every statistic its spread, and the time up to which the history itself can be trusted. Usual 1, 2 to measure how far
-    /// the scene amplifies errors, 5 to 8 for a spread; each member costs a whole run.
+    /// the scenario amplifies errors, 5 to 8 for a spread; each member costs a whole run.
     #[serde(default = "one")]
     pub ensemble: u32,
     /// A work-precision study in place of the run; absent means the run.
@@ -130,7 +130,7 @@ pub struct DrillString {
     pub material: Material,
     /// Sections from the top down, 1 or more, together no longer than the survey.
     pub sections: Vec<Section>,
-    /// Where a blade or the bit narrows the clearance; none unless given. A node is put at each. Without them stabilizers touch the
+    /// Points at which a blade or the bit narrows the clearance; none by default. Each has a node. Without them stabilizers touch the
     /// wall with their bodies only.
     #[serde(default)]
     pub gauges: Vec<Gauge>,
@@ -152,7 +152,7 @@ impl DrillString {
     }
 }
 
-/// Linear elastic material. Values for what strings are made of, with their source, are in docs/model/beam.md, Section.
+/// Linear elastic material. Values for the usual materials, with their source, are in docs/model/beam.md, Section.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -238,7 +238,7 @@ pub struct ToolJoint {
     pub material: Option<Material>,
 }
 
-/// A place where the radial clearance is given instead of following from the diameters
+/// A place at which the radial clearance is given instead of following from the diameters
 /// (a contact matter only: the mud flows past it as past the body, docs/model/mud.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -247,7 +247,7 @@ pub struct Gauge {
     /// Measured depth \[m\], on the string. Within a twentieth of the target element length of another boundary it is moved there,
     /// with a warning.
     pub measured_depth: f64,
-    /// Radial clearance j0 \[m\], above 0 and at most what the body leaves of the hole; usual 1e-4 to 3e-3. Smaller, the node is
+    /// Radial clearance j0 \[m\], above 0 and at most the clearance of the body; usual 1e-4 to 3e-3. Smaller, the node is
     /// held nearly as in a bearing, its contact chatters and steps become short; larger, the bottom-hole assembly tilts and whirls
     /// more freely.
     pub clearance: f64,
@@ -297,7 +297,7 @@ pub struct Mud {
     /// Flow index n, above 0 and at most 2; usual 0.4 to 1: 1 is a Bingham (without yield stress a Newtonian) fluid, less is
     /// shear-thinning. The smaller, the more rotation and flow thin the mud; above 1 it thickens, which drilling muds do not.
     pub flow_index: f64,
-    /// Which flow regimes are considered; absent means `auto`. With `laminar` C_f is too low wherever the flow is turbulent, in the
+    /// Flow regimes that are considered; absent means `auto`. With `laminar` C_f is too low wherever the flow is turbulent, in the
     /// base case above about 0.01 m3/s.
     #[serde(default)]
     pub regime: RegimeChoice,
@@ -316,7 +316,7 @@ pub struct Mud {
     #[serde(default)]
     pub bit_pressure_drop: f64,
     /// Pressure in the annulus at the top of the string \[Pa\], 0 or more; 0 unless given, an annulus open to the air. Usual up to
-    /// 1e7 with managed pressure, or what the mud above weighs where the string begins deep in the well; above 1.1e8 is warned
+    /// 1e7 with managed pressure, or the weight of the mud above if the string begins deep in the well; above 1.1e8 is warned
     /// of. It raises the reported
     /// pressures and moves nothing.
     #[serde(default)]
@@ -351,11 +351,11 @@ pub struct Operation {
     /// 5e5 of pull; more than 6e5 either way is warned of, 1e8 is the limit. Beyond the buckling load the string leaves the low side and presses on the wall in a helix; far beyond it the
     /// search for the equilibrium may fail. A pull raises lateral frequencies and draws the string to the inside of bends.
     pub weight_on_bit: f64,
-    /// Torque on bit \[N m\], of the sign opposite to the rotation's (either where nothing turns): negative opposes clockwise
+    /// Torque on bit \[N m\], of the sign opposite to the rotation's (either if nothing turns): negative opposes clockwise
     /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; it is constant, so that
     /// stick-slip comes from the wall alone.
     pub torque_on_bit: f64,
-    /// How the top node is held; absent means `clamped`. Bending near the top depends on it, that of the rest of the string hardly.
+    /// Boundary condition of the top node; absent means `clamped`. It affects bending near the top, and hardly the rest of the string.
     #[serde(default)]
     pub top: TopCondition,
 }
@@ -378,7 +378,7 @@ pub enum TopCondition {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ContactLaw {
-    /// Whether stiffness and damping are a node's or a length's; absent means `per_node`.
+    /// Reference of stiffness and damping, a node or a length; absent means `per_node`.
     #[serde(default)]
     pub law: WallLaw,
     /// Largest stiffness k_c of one node \[N/m\], above 0; with the law `per_length` of a gauge. Usual 1e6 to 1e8 on elements of
@@ -387,7 +387,7 @@ pub struct ContactLaw {
     /// the run fails.
     pub stiffness: f64,
     /// Largest damping c_c of one node \[N s/m\], 0 or more; with the law `per_length` of a gauge. Usual 1e3 to 1e5. At 0 nodes
-    /// rebound with all their energy and rattle; large values make impacts plastic, pull where `adhesion` is `allowed`, and shorten
+    /// rebound with all their energy and rattle; large values make impacts plastic, pull if `adhesion` is `allowed`, and shorten
     /// steps as stiffness does.
     pub damping: f64,
     /// Largest stiffness of a metre of string \[N/m2\], above 0, with the law `per_length` only; absent means 2e7, the paper's 1e7
@@ -399,14 +399,14 @@ pub struct ContactLaw {
     #[serde(default)]
     pub damping_per_length: Option<f64>,
     /// Sharpness lambda_k of the stiffness' arctangent \[1/m\], above 0; usual 1e6 to 1e8. Stiffness is half of its largest at
-    /// first touch and nine tenths at a penetration of 1 / lambda_k: where that is large beside the penetration under load, the
+    /// first touch and nine tenths at a penetration of 1 / lambda_k: if that is large relative to the penetration under load, the
     /// wall is only half as stiff.
     pub stiffness_sharpness: f64,
     /// Sharpness lambda_c of the damping's arctangent \[1/m\], above 0; usual 1e4 to 1e7. Damping is half of its largest at first
     /// touch and nine tenths at a penetration of 1 / lambda_c; too small a value halves it in every contact. No value removes the
     /// jump at touch, which limits the order of every integrator.
     pub damping_sharpness: f64,
-    /// Whether the damper may pull the string to the wall when it leaves fast; absent means `allowed`, the paper's law. With `none`
+    /// Pull of the damper on a string that leaves the wall fast; absent means `allowed`, the paper's law. With `none`
     /// normal forces are never negative, and a rebound keeps more of its energy.
     #[serde(default)]
     pub adhesion: Adhesion,
@@ -414,13 +414,13 @@ pub struct ContactLaw {
     /// string at break-away, and that of the equilibrium unless `statics.friction` is `sliding`. 0 means no friction at all.
     pub static_friction: f64,
     /// Dynamic friction coefficient mu_d of fast sliding, 0 to mu_s; usual 0.1 to 0.4. The more it lies below mu_s, the more the
-    /// falling curve feeds torsion, up to stick-slip; where it equals mu_s, it feeds none. Backward whirl is driven by friction
+    /// velocity-weakening curve excites torsion, up to stick-slip; if it equals mu_s, there is no excitation. Backward whirl is driven by friction
     /// itself and grows with it.
     pub dynamic_friction: f64,
     /// Reference speed v_ref of the regularised friction \[m/s\], above 0; its slope at rest is 1 / v_ref. Usual 0.01 to 0.1, a few
     /// per cent of the speed at which the surface slides. A sticking node creeps against a damper of F_n / v_ref: larger values
     /// creep visibly and, beyond the sliding speed, leave only the rising part of the curve and no stick-slip; smaller ones are
-    /// stiffer and ask for shorter steps.
+    /// stiffer and need shorter steps.
     pub friction_reference_speed: f64,
 }
 
@@ -435,7 +435,7 @@ impl ContactLaw {
         self.damping_per_length.unwrap_or(2e4)
     }
 
-    /// The law with what a length has by default written out.
+    /// The law with the defaults of a length written out.
     pub fn written_out(self) -> Self {
         let by_length = self.law == WallLaw::PerLength;
         Self {
@@ -445,7 +445,7 @@ impl ContactLaw {
         }
     }
 
-    /// The damping \[N s/m\] that nodes' shares of the law's damping are of: that of a node, or 1 N s/m where gauges have none and a length
+    /// Damping \[N s/m\] to which nodes' shares of the law's damping refer: that of a node, or 1 N s/m if gauges have none and a length
     /// has.
     pub fn unit_damping(&self) -> f64 {
         if self.law == WallLaw::PerLength && self.damping == 0.0 { 1.0 } else { self.damping }
@@ -490,7 +490,7 @@ pub struct RayleighDamping {
     /// Hz. Large values suppress whirl and stick-slip; high frequencies stay undamped whatever its value.
     pub mass_proportional: f64,
     /// beta \[s\], 0 or more; usual 1e-6 to 1e-4. The damping ratio beta omega / 2 grows with frequency: 3e-5 s is 0.019 % at 2 Hz
-    /// and 2.6 % at 280 Hz. With 0, velocity-weakening friction feeds torsion at every frequency, and mesh and step decide what survives;
+    /// and 2.6 % at 280 Hz. With 0, velocity-weakening friction excites torsion at every frequency, and results depend on mesh and step;
     /// large values overdamp the vibration of single pipes and lower RK4's stability limit.
     pub stiffness_proportional: f64,
 }
@@ -506,28 +506,28 @@ pub struct Recording {
     /// it; a fixed step must divide the recording interval (of `esdirk4` it may also be that times a power of two).
     pub rate_hz: f64,
     /// Nodes whose histories are kept, each once; usual 1 to 10. Orbits, spectra and statistics exist for these only, and each
-    /// costs storage; with none, and no window, `auto` leaves the run in time out. Rotation speed and torque at the bit are kept beside
-    /// them where torsion is solved for.
+    /// costs storage; with none, and no window, `auto` leaves the run in time out. Rotation speed and torque at the bit are kept with
+    /// them if torsion is solved for.
     pub nodes: Vec<NodeChoice>,
     /// Half-open windows whose full spectra are summarised, of 8 samples at least, usual 5 to 20 s each; an empty list none. Absent
-    /// means the settled window where `orbit_window` is `settled`, and the last sixth of the run otherwise. Frequencies are resolved
+    /// means the settled window if `orbit_window` is `settled`, and the last sixth of the run otherwise. Frequencies are resolved
     /// to 1 over the length of a window; too long a one smears lines that drift. A preset's windows are those of its duration: if a
     /// request changes that and gives none, they count as absent.
     #[serde(default)]
     pub spectrum_windows: Option<Vec<TimeWindow>>,
     /// Window of the orbit statistics: `settled`, or a fixed half-open one of 8 samples at least. With `settled` the run ends once
-    /// statistics of consecutive windows agree to half of what the accuracy promises, and the result reports the window. Absent
+    /// statistics of consecutive windows agree to half of the accuracy's promise, and the result reports the window. Absent
     /// means the last third of the run, and so does a preset's fixed one if a request changes the duration and gives none. A fixed
     /// one should begin when the start has died away and hold many periods of the slowest vibration, some 2 Hz in the base case:
     /// statistics over a short one scatter.
     #[serde(default)]
     pub orbit_window: Option<OrbitWindow>,
-    /// Judge by the modes about the equilibrium whether the scene is unstable by its physics, and by which; `false` unless given.
+    /// Find from the modes about the equilibrium whether the scenario is physically unstable, and by which mechanism; `false` unless given.
     /// It takes about a second; a run that fails is judged in any case.
     #[serde(default)]
     pub stability: bool,
-    /// Which tables are kept: `summary`, `spectra`, `orbits` or `full`; absent means `full`. Orbits and spectra that need what was
-    /// not kept can only be had by another run.
+    /// Tables that are kept: `summary`, `spectra`, `orbits` or `full`; absent means `full`. Orbits and spectra of tables that were
+    /// not kept need another run.
     #[serde(default)]
     pub outputs: Outputs,
     /// Snapshots of all nodes, for a view of the whole string in motion and maps of its contacts over depth and time; absent means

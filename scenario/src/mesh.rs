@@ -1,4 +1,4 @@
-//! How finely the string is cut into elements.
+//! Mesh of the string.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::Scenario;
 
-/// How finely the string is cut: `"auto"`, by a factor finer or coarser than that, or target element lengths.
+/// Mesh of the string: `"auto"`, finer or coarser than that by a factor, or target element lengths.
 ///
 /// With `auto` lengths follow from the string, its wall and the accuracy: with the factor 1 a tool joint has one element, a body between tool joints eight, and
 /// whatever lies on the wall by itself (collars, stabilizers, plain pipe) elements of two thirds of the length (4 E I / kappa)^(1/4) over which a wall of

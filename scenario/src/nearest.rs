@@ -5,7 +5,7 @@ use crate::{PRESETS, Problem};
 /// Jaro's similarity from which a name counts as misspelt: a letter too few or two that are swapped, a folder that is left out.
 const SIMILAR: f64 = 0.7;
 
-/// The most similar of some names, if it is likely what was meant.
+/// The most similar of some names, if it is likely meant.
 fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     names

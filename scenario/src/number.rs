@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl Scenario {
-    /// The floating-point number at a path such as `mud.flow_rate`; none where there is none, which includes what is
+    /// The floating-point number at a path such as `mud.flow_rate`; none if there is none, which includes what is
     /// optional and absent, and the fields of a named accuracy.
     pub fn number_mut(&mut self, path: &str) -> Option<&mut f64> {
         self.find(&parse(path).ok()?)

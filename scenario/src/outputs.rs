@@ -22,7 +22,7 @@ pub enum Outputs {
     Full,
 }
 
-/// Which part of the histories is kept.
+/// Part of the histories that is kept.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -34,7 +34,7 @@ pub struct OrbitOutputs {
     #[serde(default)]
     pub window: Option<TimeWindow>,
     /// Every how many samples one is kept, from the first of the window on; 1 or more, 1 unless given, usual 1 to 10. Storage falls
-    /// in proportion. Nothing is smoothed: frequencies above half the rate that is left fold back into spectra of what is kept.
+    /// in proportion. Nothing is smoothed: frequencies above half the rate that is left fold back into spectra of the kept samples.
     #[serde(default = "super::one")]
     pub decimation: u32,
 }

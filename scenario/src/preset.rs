@@ -19,21 +19,21 @@ macro_rules! presets {
 presets! {
     "paper-200m": "Base case of Tran et al. 2019: 200 m string in a curved 3D hole, with mud",
     "paper-200m-dry": "The same without mud, hence without buoyancy",
-    "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s, from a start in balance: torsion above the lowest modes decays",
+    "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s, started in equilibrium: torsion above the lowest modes decays",
     "closed/fast-heavy-mud": "The damped base case with 0.04 m3/s of mud of 2100 kg/m3: its largest orbits",
     "closed/building-well": "The damped base case in a well that builds from 25 to 60 degrees",
     "closed/near-horizontal": "The damped base case in a well of 85 to 90 degrees, hardly bent",
     "closed/string-1000m": "Stick-slip of a damped string of 1,000 m in a well that builds from vertical to 50 degrees",
-    "hard/tight-gauge": "Gauges of 0.01 mm in a wall of 1e9 N/m: a stiff pin with next to no play",
-    "hard/stiff-contact-10": "Contact ten times as stiff and damped: the sweeps over contacts need shorter steps",
+    "hard/tight-gauge": "Gauges of 0.01 mm in a wall of 1e9 N/m: a stiff pin with hardly any clearance",
+    "hard/stiff-contact-10": "Contact ten times as stiff and damped: contact iterations need shorter steps",
     "hard/stiff-contact-100": "Contact a hundred times as stiff and damped",
-    "hard/sharp-friction": "Friction that turns within 1 mm/s: next to a jump of the force at rest",
+    "hard/sharp-friction": "Friction that reverses within 1 mm/s: nearly a jump of the force at rest",
     "hard/dry-friction-whirl": "Dry friction of 0.8 on a slender rotor: backward whirl up to the speed of rolling without slip",
-    "hard/stick-slip": "Slow rotation and steeply falling friction: the collars stop and break loose again",
-    "hard/high-frequency-torsion": "Falling friction and little damping: standing waves of twist at 140 to 280 Hz grow, and the steps resolve them",
+    "hard/stick-slip": "Slow rotation and strongly velocity-weakening friction: the collars stick and slip",
+    "hard/high-frequency-torsion": "Velocity-weakening friction and little damping: standing torsional waves at 140 to 280 Hz grow, and the steps resolve them",
     "hard/dry-unbalance-150": "No mud and 150 times the unbalance: the string is thrown from wall to wall",
-    "hard/no-rotation": "No rotation: friction has no sense and no speed",
-    "hard/slow-rotation": "A tenth of a turn a minute: all nodes slide through friction's zero",
+    "hard/no-rotation": "No rotation: friction without direction or speed",
+    "hard/slow-rotation": "0.1 rpm: all nodes slide near zero speed",
     "hard/near-buckling": "A horizontal string near the sinusoidal buckling load, at 0.7 of it",
     "hard/beyond-buckling": "A horizontal string well beyond the helical buckling load",
     "hard/torque-near-greenhill": "A slender shaft under 0.95 of the torque that buckles it",
@@ -55,8 +55,8 @@ presets! {
     "hard/undamped-flow-torque": "No damping at all, with upward annular flow and torque: growth in the highest modes of the mesh",
 }
 
-/// The scenario of a preset, or `None` if there is none of that name. A preset's file is a scenario, or another preset with what to
-/// change in it.
+/// The scenario of a preset, or `None` if there is none of that name. A preset's file is a scenario, or another preset with
+/// changes.
 pub fn preset(name: &str) -> Option<Scenario> {
     let request = ScenarioRequest::from_toml(text(name)?).expect("shipped presets are parsed by a test");
     let scenario = request.resolve().expect("shipped presets are resolved by a test");
@@ -113,7 +113,7 @@ mod tests {
         for (name, _) in closed {
             let scene = preset(name).unwrap();
             assert_eq!(scene.damping, damped.damping, "{name}");
-            // That of 1,000 m grows slowly into stick-slip.
+            // The motion of the string of 1,000 m grows slowly into stick-slip.
             let longest = if *name == "closed/string-1000m" { 600.0 } else { damped.duration };
             assert_eq!((scene.duration, scene.settles()), (longest, true), "{name}");
             assert_eq!(scene.spectrum_windows(), None, "{name}");
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn base_case_matches_the_papers_totals() {
-        // Table 1 gives 200 m; Table 6's masses add up to 1.769 kg m, where equation (38) with its rpm gives 1.78.
+        // Table 1 gives 200 m; Table 6's masses add up to 1.769 kg m, while equation (38) with its rpm gives 1.78.
         let scenario = preset("paper-200m").unwrap();
         let length: f64 = scenario.string.sections.iter().map(|s| f64::from(s.count) * s.length).sum();
         assert_eq!(length, 200.0);

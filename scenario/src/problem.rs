@@ -1,4 +1,4 @@
-//! Problems of a scenario, and where they are.
+//! Problems of a scenario, with their places.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// A problem at a path, with what was found there and what would be valid.
+    /// A problem at a path, with the value found there and the valid ones.
     pub fn new(path: impl Into<String>, got: impl Into<String>, message: impl Into<String>) -> Self {
         Self { path: path.into(), got: got.into(), message: message.into() }
     }
@@ -29,7 +29,7 @@ impl Problem {
     }
 
     /// A problem from the message of a serde error, in words that need no Rust: what it got and what it expected are separated, names of
-    /// types, variants and fields become what a document holds.
+    /// types, variants and fields become those of the document.
     pub fn from_serde(path: String, message: &str) -> Self {
         let path = if path == "." { String::new() } else { path };
         let parted = ["invalid type: ", "invalid value: ", "invalid length "]
@@ -157,7 +157,7 @@ impl From<Problem> for Problems {
 pub struct Warning {
     /// Path of the field in the scenario.
     pub path: String,
-    /// Consequence, and what may have been meant.
+    /// Consequence, and the value that may have been meant.
     pub message: String,
 }
 

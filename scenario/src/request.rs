@@ -1,4 +1,4 @@
-//! A scenario as people ask for it: a preset or a full one, with changes.
+//! Requests for a scenario: a preset or a full one, with changes.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::{Problem, Problems, Scenario, preset, unknown_preset};
 /// Problems of one request that are looked for at most.
 pub const MOST_PROBLEMS: usize = 100;
 
-/// A preset or a full scenario, and what to change in it:
+/// A preset or a full scenario, with changes:
 /// `{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "mud.density": 1500}}`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -24,7 +24,7 @@ pub struct ScenarioRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Scenario>,
     /// Values by path (see [`Scenario::with`]): `mud.flow_rate`, `string.sections[1].count`. An object changes
-    /// the fields it names; `null` removes what is optional. An outer path is applied before those inside it.
+    /// the fields it names; `null` removes an optional field. An outer path is applied before those inside it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, Value>,
 }
@@ -38,7 +38,7 @@ impl ScenarioRequest {
     /// Reads a request, or a plain scenario, from JSON.
     ///
     /// # Errors
-    /// The first place where the text is not JSON or neither of the two.
+    /// The first place at which the text is not JSON or neither of the two.
     pub fn from_json(text: &str) -> Result<Self, Problem> {
         let document: Value = serde_json::from_str(text).map_err(|error| not_json(&error))?;
         if is_request(|key| document.get(key).is_some()) {
@@ -50,7 +50,7 @@ impl ScenarioRequest {
     /// Reads a request, or a plain scenario, from TOML.
     ///
     /// # Errors
-    /// The first place where the text is not TOML or neither of the two.
+    /// The first place at which the text is not TOML or neither of the two.
     pub fn from_toml(text: &str) -> Result<Self, Problem> {
         let document = table(text)?;
         if is_request(|key| document.contains_key(key)) {
@@ -59,7 +59,7 @@ impl ScenarioRequest {
         Ok(Self { scenario: Some(from_table(document)?), ..Self::default() })
     }
 
-    /// The scenario asked for. It is not validated yet.
+    /// The requested scenario. It is not validated yet.
     ///
     /// # Errors
     /// No base or two, an unknown preset, and every change that cannot be made, of many the first [`MOST_PROBLEMS`]. Paths of the
@@ -68,7 +68,7 @@ impl ScenarioRequest {
         self.resolve_for_sweep(&[])
     }
 
-    /// The same where the fields at the paths `swept` will be changed from point to point.
+    /// The same if the fields at the paths `swept` will be changed from point to point.
     ///
     /// # Errors
     /// As [`resolve`](Self::resolve).
@@ -131,7 +131,7 @@ impl ScenarioRequest {
     }
 }
 
-/// Whether a document with these keys is a request rather than a plain scenario.
+/// True if a document with these keys is a request rather than a plain scenario.
 fn is_request(has: impl Fn(&str) -> bool) -> bool {
     ["preset", "scenario", "set"].into_iter().any(has)
 }

@@ -9,7 +9,7 @@ use crate::{Problem, Scenario, TimeWindow};
 impl Scenario {
     /// The scenario with one field changed. `path` names it with dots and indices: `mud.flow_rate`,
     /// `string.sections[1].count`, `recording.nodes`. An object given for an object changes the fields it
-    /// names and leaves the others; `null` removes what is optional (`mud`). A field of a named accuracy may
+    /// names and leaves the others; `null` removes an optional section (`mud`). A field of a named accuracy may
     /// be set: the accuracy is written out first. A tolerance takes the place of a method, and a method that of a tolerance;
     /// a factor on the mesh `auto` that of target lengths. Snapshots come to be by their rate, `recording.snapshots.rate_hz`,
     /// and an end of a settled orbit window makes it a fixed one, the last third otherwise.

@@ -1,10 +1,10 @@
-//! When the motion of the whole string is kept.
+//! Times at which the motion of the whole string is kept.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Scenario, TimeWindow};
 
-/// Snapshots of the whole string: of every node its displacements and the normal force of the wall, at a rate that is modest beside the
+/// Snapshots of the whole string: displacements and normal force of the wall at every node, at a rate that is low compared with the
 /// recording rate, as the table `snapshots`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -21,7 +21,7 @@ pub struct Snapshots {
 }
 
 impl Scenario {
-    /// The window in which snapshots are kept: what `recording.snapshots` says, or the whole run; none without snapshots.
+    /// The window in which snapshots are kept: that of `recording.snapshots`, or the whole run; none without snapshots.
     pub fn snapshot_window(&self) -> Option<TimeWindow> {
         let whole = TimeWindow { from: 0.0, to: self.duration };
         self.recording.snapshots.map(|snapshots| snapshots.window.unwrap_or(whole))

@@ -17,7 +17,7 @@ pub struct Statics {
     #[serde(default)]
     pub friction: StartFriction,
     /// Starts that are run: `one` (the equilibrium with the `friction` above) or `both` (that with the other friction as well, to
-    /// compare the statistics of the two runs); absent means `one`. Where both settle in different states, the scenario has
+    /// compare the statistics of the two runs); absent means `one`. If both settle in different states, the scenario has
     /// hysteresis. The second run costs as much as the first.
     #[serde(default)]
     pub start: Starts,

@@ -17,7 +17,7 @@ use serde::forward_to_deserialize_any;
 /// only.
 ///
 /// # Errors
-/// As the type's own, and a list where a struct is wanted or an object where a name is.
+/// The type's own problems, and a list in place of a struct or an object in place of a name.
 pub fn read_strictly<'de, T: Deserialize<'de>, D: Deserializer<'de>>(format: D) -> Result<T, D::Error> {
     T::deserialize(Strict(format))
 }
@@ -256,7 +256,7 @@ impl<'de, A: MapAccess<'de>> EnumAccess<'de> for Variants<A> {
 }
 
 impl<'de, A: MapAccess<'de>> Variants<A> {
-    /// The content, which nothing stands beside.
+    /// The content, as the only member.
     fn content<S: DeserializeSeed<'de>>(mut self, seed: S) -> Result<S::Value, A::Error> {
         let content = self.0.next_value_seed(seed)?;
         match self.0.next_key::<IgnoredAny>()? {

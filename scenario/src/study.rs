@@ -4,15 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AccuracyPreset, Effect, Integrator, Scenario, TimeStepping};
 
-/// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
-/// different kind both reach.
+/// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, relative to a reference on
+/// which two independent methods agree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
     /// Simulated time of each run \[s\], 80 recording intervals or more and a whole number of them. Absent means the scenario's own
     /// duration and windows: with a settled one each run goes on until its own statistics have settled. Of any other duration orbits are looked at
-    /// over the last third, and spectra over the last sixth. A short one saves time and misses what comes late, such as stick-slip.
+    /// over the last third, and spectra over the last sixth. A short one saves time and misses late effects, such as stick-slip.
     #[serde(default)]
     pub duration: Option<f64>,
     /// Members of the ensemble that each method runs, 1 to 64, 1 unless given; usual 1, 3 or 5. With 5 or more, bias (difference of
@@ -26,7 +26,7 @@ pub struct CostStudy {
     /// Named accuracies to compare, as they stand; all three unless given.
     #[serde(default = "all_presets")]
     pub presets: Vec<AccuracyPreset>,
-    /// Methods and their steps to compare besides; absent means `generalized_alpha` with 0.5, 0.25 and 0.125 ms and `esdirk4`
+    /// Further methods and their steps to compare; absent means `generalized_alpha` with 0.5, 0.25 and 0.125 ms and `esdirk4`
     /// with 1, 0.5 and 0.25 ms, as far as they divide the recording interval, and for runs that settle `rk4` with 0.95 of its stability limit on
     /// the scenario's own mesh. The reference's two methods are always shown.
     #[serde(default)]
@@ -60,15 +60,15 @@ impl Scenario {
     }
 }
 
-/// Fixed steps \[s\] that are compared where a study names none.
+/// Fixed steps \[s\] that are compared if a study names none.
 pub const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
     [(Integrator::GeneralizedAlpha, [5e-4, 2.5e-4, 1.25e-4]), (Integrator::Esdirk4, [1e-3, 5e-4, 2.5e-4])];
 
-/// Factors on the mesh's target element lengths that are compared for a whole error where a study names none: two meshes would tell
+/// Factors on the mesh's target element lengths that are compared for a whole error if a study names none: two meshes would tell
 /// no order of convergence.
 const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// The reference of a study: two methods of different kind. What both reach is the reference; a statistic in which they differ
+/// The reference of a study: two independent methods. Their common result is the reference; a statistic in which they differ
 /// by more than is allowed has none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
@@ -83,7 +83,7 @@ pub struct StudyReference {
     #[serde(default)]
     pub mesh_factor: Option<f64>,
     /// Relative difference of orbit size, mean radius and contact force up to which the two agree, above 0 and below 1; 0.01 unless
-    /// given, usual 0.003 to 0.03. Too small leaves no reference in scenes that scatter; too large lets the reference's own error
+    /// given, usual 0.003 to 0.03. Too small leaves no reference for scenarios that scatter; too large lets the reference's own error
     /// pass for that of a method.
     #[serde(default = "one_percent")]
     pub size_agreement: f64,
@@ -139,7 +139,7 @@ impl CostStudy {
         2 + if self.effects { Effect::ALL.len() } else { self.presets.len() + self.meshes().len() + steps }
     }
 
-    /// Factors of the meshes that are compared, the scenario's own among them, from coarse to fine; empty where none are.
+    /// Factors of the meshes that are compared, the scenario's own among them, from coarse to fine; empty if none are.
     pub fn meshes(&self) -> Vec<f64> {
         let mut factors = match self.total {
             Some(_) if self.mesh_factors.is_empty() => USUAL_MESH_FACTORS.to_vec(),

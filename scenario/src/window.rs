@@ -43,12 +43,12 @@ impl From<TimeWindow> for OrbitWindow {
 }
 
 impl Scenario {
-    /// Whether the run ends once its motion has settled.
+    /// True if the run ends once its motion has settled.
     pub fn settles(&self) -> bool {
         self.recording.orbit_window == Some(OrbitWindow::SETTLED)
     }
 
-    /// The fixed window of the orbit statistics: what `recording` gives, or the last third of the run; absent where it is `settled`.
+    /// The fixed window of the orbit statistics: that of `recording`, or the last third of the run; absent if it is `settled`.
     pub fn orbit_window(&self) -> Option<TimeWindow> {
         match self.recording.orbit_window {
             Some(OrbitWindow::Named(WindowName::Settled)) => None,
@@ -62,8 +62,8 @@ impl Scenario {
         TimeWindow { from: self.duration * 2.0 / 3.0, to: self.duration }
     }
 
-    /// The fixed windows whose full spectra are summarised: what `recording` gives, or the last sixth of the run, from a sample on;
-    /// none where that holds fewer than 8. Absent where it is the settled window.
+    /// The fixed windows whose full spectra are summarised: those of `recording`, or the last sixth of the run, from a sample on;
+    /// none if that holds fewer than 8. Absent if it is the settled window.
     pub fn spectrum_windows(&self) -> Option<Vec<TimeWindow>> {
         if let Some(given) = &self.recording.spectrum_windows {
             return Some(given.clone());

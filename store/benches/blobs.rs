@@ -20,7 +20,7 @@ fn main() {
     divan::main();
 }
 
-/// Where blobs lie.
+/// Location of blobs.
 trait Place {
     fn new() -> Self;
     fn location(&self) -> ObjectsLocation;
@@ -78,7 +78,7 @@ fn content(bytes: u64, number: u64) -> Vec<u8> {
     content
 }
 
-/// By a process that has not read it before.
+/// Reads by a process that has not read the blob before.
 #[divan::bench(types = [Directory, Bucket], sample_count = 20, sample_size = 1)]
 fn first_range<P: Place>(bencher: Bencher) {
     let stored = Stored::<P>::new();

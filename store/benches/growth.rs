@@ -1,4 +1,4 @@
-//! How large the queue may grow: a sweep of many points, and many workers that claim, renew their lease as they reserve a small blob, write
+//! Growth of the queue: a sweep of many points, and many workers that claim, renew their lease as they reserve a small blob, write
 //! it and finish, and compute nothing, while others submit and look.
 //!
 //! `cargo bench -p drillsweep-store --bench growth -- --engine postgres --points 1000000 --workers 200 --seconds 120`
@@ -27,7 +27,7 @@ const SETTINGS: &[&str] =
 
 const SWEEP: &str = "0190";
 
-/// How long the workers have worked before it is measured. With its first points each of their connections reads the schema, plans its
+/// Warm-up of the workers before the measurement. With its first points each of their connections reads the schema, plans its
 /// statements and maps the server's memory, and what was submitted is vacuumed and analyzed for the first time, after which all plan anew.
 const WARM_UP: Duration = Duration::from_secs(60);
 
@@ -36,9 +36,9 @@ struct Plan {
     engine: String,
     points: i64,
     workers: usize,
-    /// How long the workers' work is measured.
+    /// Duration of the measurement \[s\].
     seconds: u64,
-    /// How long a worker has each point before it finishes it.
+    /// Time for which a worker keeps each point before it finishes it.
     compute: Duration,
 }
 
@@ -189,7 +189,7 @@ async fn submit_beside(store: Store, is_over: Arc<AtomicBool>) -> Vec<Duration> 
     times
 }
 
-/// How long readers waited.
+/// Waiting times of readers.
 #[derive(Default)]
 struct Readings {
     lists: Vec<Duration>,
@@ -221,12 +221,12 @@ async fn read_beside(store: Store, points: i64, is_over: Arc<AtomicBool>) -> Rea
     readings
 }
 
-/// How long a worker waited for the database.
+/// Waiting times of a worker for the database.
 #[derive(Default)]
 struct Waits {
-    /// For its first point.
+    /// Waits for its first point.
     claims: Vec<Duration>,
-    /// When, and for a result to be stored and the next point to be claimed.
+    /// Instants of finishing, with the waits for a result to be stored and the next point to be claimed.
     finishes: Vec<(Instant, Duration)>,
 }
 

@@ -42,10 +42,10 @@ pub enum StoreError {
     )]
     UntrustedObjects(rustls::Error),
     /// A result names a blob that is not there, or not any more: it must be written again.
-    #[error("the blob {0} of a result is not there")]
+    #[error("the blob {0} of a result is missing")]
     BlobMissing(String),
     /// The content of a blob is not what was written: a disk or a person changed it.
-    #[error("the content of the blob {0} is not what its name says")]
+    #[error("the content of the blob {0} does not match its hash")]
     BlobDamaged(BlobId),
     /// A range of bytes is empty, or begins beyond the end of the blob.
     #[error("the blob {0} has no such bytes")]
@@ -58,7 +58,7 @@ pub enum StoreError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// A text says neither where a database nor where an object store is.
+    /// A text is the location of neither a database nor an object store.
     #[error("{0}")]
     Location(String),
     /// SQLite's locks do not reach other machines: on a file system that several have it would damage its file.
@@ -93,7 +93,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// True where the disk or the object store has no room: the same call succeeds once it has.
+    /// True if the disk or the object store has no room: the same call succeeds once it has.
     pub fn is_full(&self) -> bool {
         if let StoreError::Database(sqlx::Error::Database(error)) = self {
             return match engine_code(error.as_ref()) {
@@ -112,8 +112,8 @@ impl StoreError {
             })
     }
 
-    /// True where the object store did not answer, broke off, or said that it cannot now: the same call may succeed later.
-    /// A blob that was asked for is not lost. A certificate that is not accepted is such a case: it may be renewed.
+    /// True if the object store did not answer, broke off, or reported that it is unavailable: the same call may succeed later.
+    /// A blob that was requested is not lost. A certificate that is not accepted is such a case: it may be renewed.
     pub fn is_unavailable(&self) -> bool {
         /// Errors of the service, and too many requests: in the status or in the body of a success.
         const UNABLE: [&str; 4] =
@@ -126,7 +126,7 @@ impl StoreError {
             && (self.cause(|_: &HttpError| true) || self.answer_has(&UNABLE))
     }
 
-    /// True where a blob is lost: it is not there, is not what was written, or lies on a part of the disk that cannot be read.
+    /// True if a blob is lost: it is not there, is not what was written, or lies on a part of the disk that cannot be read.
     /// Trying again brings nothing; what the blob held has to be computed again.
     pub fn is_damage(&self) -> bool {
         /// The errno of a failed read on Linux and other Unix systems.
@@ -142,7 +142,7 @@ impl StoreError {
         }
     }
 
-    /// Whether an error of some type that is behind it is such a one.
+    /// True if a cause of this type satisfies the condition.
     fn cause<E: std::error::Error + 'static>(&self, is_such: impl Fn(&E) -> bool) -> bool {
         let mut cause = self.source();
         while let Some(error) = cause {
@@ -154,7 +154,7 @@ impl StoreError {
         false
     }
 
-    /// Whether what a service answered has any of these texts. `object_store` does not hand out status and body otherwise.
+    /// True if a service's answer has any of these texts. `object_store` does not hand out status and body otherwise.
     fn answer_has(&self, texts: &[&str]) -> bool {
         let StoreError::Blob(error) = self else {
             return false;
@@ -163,7 +163,7 @@ impl StoreError {
         texts.iter().any(|part| text.contains(part))
     }
 
-    /// True where the same call may succeed a moment later: the database was busy, or did not answer.
+    /// True if the same call may succeed a moment later: the database was busy, or did not answer.
     pub fn is_busy(&self) -> bool {
         match self {
             StoreError::Database(error) | StoreError::Migration(MigrateError::Execute(error)) => {
@@ -206,7 +206,7 @@ impl FromStr for BlobId {
     }
 }
 
-/// Why a server's certificate was not accepted, where that is behind an error.
+/// Reason for which a server's certificate was not accepted, if that caused an error.
 pub(crate) fn untrusted_certificate<'e>(
     error: &'e (dyn std::error::Error + 'static),
 ) -> Option<&'e rustls::Error> {
@@ -224,7 +224,7 @@ pub(crate) fn untrusted_certificate<'e>(
     None
 }
 
-/// Whether a database may do a moment later what it did not now.
+/// True if a database may succeed a moment later.
 fn is_passing(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::Database(error) => match engine_code(error.as_ref()) {
@@ -240,14 +240,14 @@ fn is_passing(error: &sqlx::Error) -> bool {
         // A connection that could not be made, or broke off, and not one that was refused.
         sqlx::Error::Io(error) => refused_certificate(error).is_none(),
         sqlx::Error::PoolTimedOut => true,
-        // A PostgreSQL server that can make no process for a connection says so before it is asked for anything, where the client
+        // A PostgreSQL server that can make no process for a connection says so before any request, while the client
         // looks for one letter about encryption.
         sqlx::Error::Protocol(told) => told.contains("SSLRequest"),
         _ => false,
     }
 }
 
-/// Why a database's server was not believed, where that is what an error says.
+/// Reason for which the certificate of a database's server was refused, if that caused an error.
 fn refused_certificate(error: &io::Error) -> Option<&rustls::Error> {
     error.get_ref()?.downcast_ref()
 }

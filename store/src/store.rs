@@ -14,7 +14,7 @@ use crate::engine::throttle::Throttle;
 use crate::error::Result;
 use crate::metrics::Metrics;
 
-/// Where the store lies and who opens it.
+/// Location of the store, and role of the process that opens it.
 #[derive(Debug, Clone)]
 pub struct StoreConfig {
     /// The queue and the index of results.
@@ -47,7 +47,7 @@ impl StoreConfig {
         Self { objects, ..self }
     }
 
-    /// Whether there is a store already; opening makes one where there is none. Of a server that is found out by opening it.
+    /// True if a store exists; opening makes one otherwise. A database server counts as existing until it is opened.
     pub fn exists(&self) -> bool {
         match &self.database {
             DatabaseLocation::Sqlite(path) => path.exists(),
@@ -73,15 +73,15 @@ impl Store {
     /// Opens the store and brings its schema up to date. Any number of processes may do so at once.
     ///
     /// # Errors
-    /// When a directory cannot be made, or the database cannot be opened or migrated.
+    /// A directory cannot be made, or the database cannot be opened or migrated.
     pub async fn open(config: &StoreConfig) -> Result<Self> {
         Self::with(config, Database::open(&config.database, config.role, config.clock_offset_ms).await?)
     }
 
-    /// Opens the store to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
+    /// Opens the store read-only: nothing is made or changed, so that a copy on a read-only medium can be read.
     ///
     /// # Errors
-    /// When the database cannot be opened.
+    /// The database cannot be opened.
     pub async fn open_read_only(config: &StoreConfig) -> Result<Self> {
         Self::with(config, Database::open_read_only(&config.database).await?)
     }
@@ -108,10 +108,10 @@ impl Store {
     }
 
     /// Asks an object store that is reached by TLS whether it has a certificate that is accepted. One that does not answer is no
-    /// matter: it is asked again where it is needed.
+    /// matter: it is asked again when it is needed.
     ///
     /// # Errors
-    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) where it has not.
+    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) if it has not.
     pub async fn check_certificate(&self) -> Result<()> {
         self.blobs.check_certificate().await
     }
@@ -122,12 +122,12 @@ impl Store {
         self.database.close().await;
     }
 
-    /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
+    /// A transaction during which no other one changes the state of a work item, a point or a sweep.
     pub(crate) async fn write(&self) -> Result<Transaction> {
         self.database.write().await
     }
 
-    /// A transaction that changes the state of one work item and what belongs to it, beside others that do so.
+    /// A transaction that changes the state of one work item and what belongs to it, concurrently with others that do so.
     pub(crate) async fn write_one(&self) -> Result<Transaction> {
         self.database.write_one().await
     }
@@ -142,7 +142,7 @@ impl Store {
         self.listening.sweep_changes(&self.database).await
     }
 
-    /// Does what follows for others from changes of work items whose processes died before they had: who reads that calls it.
+    /// Applies the consequences for others of changes of work items whose processes died before; called before such data is read.
     pub(crate) async fn apply_left_transitions(&self) {
         if self.applying.is_due() {
             self.database.apply_transitions().await;
@@ -152,7 +152,7 @@ impl Store {
     /// Milliseconds since the epoch by the database's clock.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn now_ms(&self) -> Result<i64> {
         query(sql::clock::NOW).scalar(&self.database).await
     }

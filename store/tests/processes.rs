@@ -113,12 +113,12 @@ fn tell(line: &str) {
     output.flush().unwrap();
 }
 
-/// When a worker is killed.
+/// Moment at which a worker is killed.
 #[derive(Clone, Copy)]
 enum Kill {
     /// Never: it ends by itself.
     Never,
-    /// When it has told of so many points: wherever it then is.
+    /// After it has reported this many points, wherever it then is.
     AfterTelling(usize),
     /// At its n-th point, after the step of this name.
     At(&'static str, usize),

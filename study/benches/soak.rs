@@ -41,7 +41,7 @@ struct Arguments {
     /// Run the scenarios at this accuracy for 0.4 s, instead of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
     accuracy: Option<String>,
-    /// Run every scenario with a finer step as well, and report how many results that contradicts.
+    /// Run every scenario with a finer step as well, and report the number of results that it contradicts.
     #[arg(long)]
     finer: bool,
     /// Passed by `cargo bench`.
@@ -205,9 +205,9 @@ struct FinerCounts {
     agree: u64,
     at_rest: u64,
     no_result: u64,
-    /// Scenes whose results a finer step contradicts.
+    /// Scenarios whose results a finer step contradicts.
     differ: Vec<Differing>,
-    /// Those whose results a start a micrometre apart contradicts as well.
+    /// Scenarios whose results a start a micrometre apart contradicts as well.
     sensitive: Vec<Differing>,
 }
 

@@ -10,7 +10,7 @@ use crate::table::{Column, Table};
 /// back, as in JSON.
 ///
 /// # Errors
-/// When the columns differ in length.
+/// The columns differ in length.
 pub fn write(table: &Table) -> Result<String, TableError> {
     let mut bytes = Vec::new();
     write_to(table, &mut bytes)?;
@@ -20,7 +20,7 @@ pub fn write(table: &Table) -> Result<String, TableError> {
 /// The same to a sink; it holds one piece of some rows in memory.
 ///
 /// # Errors
-/// When a piece cannot be read, the columns differ in length, or the sink fails.
+/// A piece cannot be read, the columns differ in length, or the sink fails.
 pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let mut writer = ::csv::Writer::from_writer(sink);
     writer.write_record(source.layout().columns.keys()).map_err(failed)?;

@@ -2,10 +2,10 @@
 
 use ::parquet::errors::ParquetError;
 
-/// Why a table cannot be written or read.
+/// Errors of writing and reading tables.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// The bytes are not what this program writes, or cannot be encoded.
+    /// The bytes are not of this program's form, or cannot be encoded.
     #[error("parquet: {0}")]
     Parquet(#[from] ParquetError),
     /// The target does not take the table.

@@ -8,7 +8,7 @@ use crate::source::{Sink, Source};
 /// The table as serde writes it, to the byte; it holds one piece of some columns in memory.
 ///
 /// # Errors
-/// When a piece cannot be read, or the sink fails.
+/// A piece cannot be read, or the sink fails.
 pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let layout = source.layout();
     sink.write_all(b"{")?;

@@ -1,7 +1,7 @@
 //! Tables of results and the vocabulary that they are written in.
 //!
-//! A [`Table`] has columns of one length. What a column's name stands for (symbol, unit, label, the unit in which the oil field
-//! reads it) says its [`quantity`](drillsweep_quantity); nothing else in the workspace has units or labels of its own. A table is written as
+//! A [`Table`] has columns of one length. The meaning of a column's name (symbol, unit, label, the unit in which the oil field
+//! reads it) is its [`quantity`](drillsweep_quantity); nothing else in the workspace has units or labels of its own. A table is written as
 //! [`json`], [`csv`], [`npz`] and [`parquet`] by these modules, from a [`Source`]: a table in memory, or a part of a stored one, which
 //! is then read piece by piece.
 

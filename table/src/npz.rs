@@ -15,13 +15,13 @@ const ALIGNMENT: usize = 64;
 /// Values of a column that are converted at once.
 const VALUES: usize = 8 << 10;
 
-/// The table as an NPZ archive. Numbers are `float64`, whole numbers `int64` (or `float64` with NaN where one is
-/// missing), texts `str` (empty where one is missing). The arrays of no dimension `attributes_json` and `units_json`
+/// The table as an NPZ archive. Numbers are `float64`, whole numbers `int64` (or `float64` with NaN if one is
+/// missing), texts `str` (empty if one is missing). The arrays of no dimension `attributes_json` and `units_json`
 /// hold what the JSON form has under these names. The same table gives the same bytes. One piece of some columns and one array are in
 /// memory.
 ///
 /// # Errors
-/// When a piece cannot be read, the archive would be too large for its format, or the sink fails.
+/// A piece cannot be read, the archive would be too large for its format, or the sink fails.
 pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let mut tail = Tail::new(sink);
     archive(source, &mut tail)?;
@@ -60,7 +60,7 @@ fn end(mut archive: ZipWriter<&mut dyn Place>, layout: &Table) -> Result<(), Tab
     Ok(())
 }
 
-/// Begins an array of about so many bytes.
+/// Begins an array of about this many bytes.
 fn begin(archive: &mut ZipWriter<&mut dyn Place>, name: &str, bytes: usize) -> io::Result<()> {
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     Ok(archive.start_file(format!("{name}.npy"), options.large_file(bytes > 1 << 31))?)

@@ -20,17 +20,17 @@ mod read;
 
 pub use read::{Cut, FOOTER_END, ReadAt, StoredTable, memory, read};
 
-/// Bytes of a row group at most, before compression: what writing or reading a table of many columns takes at once.
+/// Bytes of a row group at most, before compression: the memory of writing or reading a table of many columns.
 const ROW_GROUP_BYTES: usize = 32 << 20;
 
-/// Bytes of memory that a [`Writer`] takes at most, besides its footer.
+/// Bytes of memory that a [`Writer`] takes at most, in addition to its footer.
 pub const MEMORY_OF_WRITER: u64 = ROW_GROUP_BYTES as u64;
 
 /// A table as Parquet, without its attributes. Every column is required there: a missing number is NaN (whole numbers of which one is
 /// missing become numbers of double precision), a missing text is empty. The same table gives the same bytes.
 ///
 /// # Errors
-/// When the columns differ in length.
+/// The columns differ in length.
 pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
     let mut bytes = Vec::new();
     write_to(table, &mut bytes)?;
@@ -40,7 +40,7 @@ pub fn write(table: &Table) -> Result<Vec<u8>, TableError> {
 /// The same to a sink, from pieces of some rows; it holds one of them and a row group in memory.
 ///
 /// # Errors
-/// When a piece cannot be read, the columns differ in length, or the sink fails.
+/// A piece cannot be read, the columns differ in length, or the sink fails.
 pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
     let mut writer = Writer::new(sink, source.layout())?;
     for piece in source.by_rows() {
@@ -50,7 +50,7 @@ pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableEr
 }
 
 /// Writes a table piece by piece, as [`write()`] writes it in one; it holds one row group in memory, whatever the length of the table.
-/// How a table is cut into pieces does not change the bytes.
+/// The bytes do not depend on the pieces into which a table is cut.
 pub struct Writer<'t, 's> {
     file: SerializedFileWriter<&'t mut Sink<'s>>,
     types: Vec<PhysicalType>,
@@ -65,9 +65,9 @@ impl<'t, 's> Writer<'t, 's> {
     /// whether something may be missing.
     ///
     /// # Errors
-    /// When the sink fails.
+    /// The sink fails.
     pub fn new(sink: &'t mut Sink<'s>, layout: &Table) -> Result<Self, TableError> {
-        // What this level does not use of Zstandard is not built (`.cargo/config.toml`).
+        // Other levels of Zstandard are not built (`.cargo/config.toml`).
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
             .set_dictionary_enabled(false)
@@ -106,7 +106,7 @@ impl<'t, 's> Writer<'t, 's> {
     /// Adds rows.
     ///
     /// # Errors
-    /// When the columns are not those of the layout or differ in length, or the sink fails.
+    /// The columns are not those of the layout or differ in length, or the sink fails.
     pub fn write(&mut self, rows: &Table) -> Result<(), TableError> {
         let count = rows.rows();
         for (name, column) in &rows.columns {
@@ -133,10 +133,10 @@ impl<'t, 's> Writer<'t, 's> {
         Ok(())
     }
 
-    /// Writes what is left, and the file's footer.
+    /// Writes the rest, and the file's footer.
     ///
     /// # Errors
-    /// When the sink fails.
+    /// The sink fails.
     pub fn finish(mut self) -> Result<(), TableError> {
         // A table without rows has a row group without rows.
         if self.pending.rows() > 0 || !self.has_groups {

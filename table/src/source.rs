@@ -1,4 +1,4 @@
-//! Where a table comes from that is written piece by piece, so that it need not be in memory as a whole.
+//! Source of a table that is written piece by piece, so that it need not be in memory as a whole.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -7,10 +7,10 @@ use std::iter::once;
 use crate::error::TableError;
 use crate::table::Table;
 
-/// Where a table goes as it is written. Not a type parameter: the code of the formats would be compiled once more for each sink.
+/// Destination of a written table. Not a type parameter: the code of the formats would be compiled once more for each sink.
 pub type Sink<'s> = dyn Write + Send + 's;
 
-/// A table in pieces: what a format is written from.
+/// A table in pieces, from which formats are written.
 pub trait Source {
     /// The columns in their order with types and units, and the attributes. It may have rows: all of them.
     fn layout(&self) -> &Table;

@@ -79,7 +79,7 @@ impl Column {
         }
     }
 
-    /// The same in double precision, where it is in single; every value is kept.
+    /// The same in double precision, if it is in single; every value is kept.
     #[must_use]
     pub fn widened(self) -> Column {
         match self {
@@ -129,7 +129,7 @@ impl Table {
         }
     }
 
-    /// Whether another table has columns of the same names and types, in the same order.
+    /// True if another table has columns of the same names and types, in the same order.
     pub(crate) fn has_columns_of(&self, other: &Table) -> bool {
         let type_of = |(name, column)| (name, std::mem::discriminant::<Column>(column));
         self.columns.iter().map(type_of).eq(other.columns.iter().map(type_of))
@@ -138,7 +138,7 @@ impl Table {
     /// Adds some rows of a table with the same columns; as memory for the next ones is set aside, `most` rows are thought of at most.
     ///
     /// # Panics
-    /// When names or types of the columns differ, or there are no such rows.
+    /// Names or types of the columns differ, or there are no such rows.
     pub(crate) fn append(&mut self, other: &Table, rows: Range<usize>, most: usize) {
         for (name, column) in &other.columns {
             self.columns[name].append(column, rows.clone(), most);

@@ -67,7 +67,7 @@ pub static STATICS: Layout = Layout {
     by_node: &[],
 };
 
-/// The recorded motion; the last two columns of each node where torsion is solved for, and then also those of the bit.
+/// The recorded motion; the last two columns of each node if torsion is solved for, and then also those of the bit.
 pub static HISTORY: Layout = Layout {
     name: "history",
     columns: &[&TIME],
@@ -78,7 +78,7 @@ pub static HISTORY: Layout = Layout {
 /// `history` is of the window of its statistics.
 pub static COURSE: Layout = Layout { name: "course", columns: &[&TIME], by_node: &[&U, &V, &ROTATION_SPEED] };
 
-/// Snapshots of the whole string: a row a node, snapshot after snapshot; only what was solved for.
+/// Snapshots of the whole string: a row a node, snapshot after snapshot; with the degrees of freedom of the run only.
 pub static SNAPSHOTS: Layout = Layout {
     name: "snapshots",
     columns: &[&TIME, &NODE, &U, &V, &W, &THETA_Z, &ROTATION_SPEED, &TORQUE, &NORMAL_FORCE],

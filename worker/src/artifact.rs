@@ -23,7 +23,7 @@ pub struct EncodedArtifact {
 const JSON: &str = "application/json";
 const PARQUET: &str = "application/vnd.apache.parquet";
 
-/// Why samples or tables cannot be kept.
+/// Errors of keeping samples and tables.
 #[derive(Debug, thiserror::Error)]
 pub enum ArtifactError {
     /// A table cannot be encoded.

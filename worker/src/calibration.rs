@@ -1,4 +1,4 @@
-//! How fast this machine is: short runs whose steps are timed, so that plans can predict processor times.
+//! Speed of this machine, from short runs whose steps are timed, so that plans can predict processor times.
 
 use drillsweep_scenario::{Scenario, preset};
 use drillsweep_sim::control::Control;
@@ -19,7 +19,7 @@ const REPETITIONS: usize = 5;
 /// Measures this machine, in about a second.
 ///
 /// # Errors
-/// When a run fails, which it does on no machine that computes correctly.
+/// A run fails, which it does on no machine that computes correctly.
 pub fn calibrate() -> Result<MachineSpeed, ComputeError> {
     let base = preset(BASE).ok_or_else(|| ComputeError::Invalid(format!("there is no preset {BASE}")))?;
     let model = Model::new(&base)?;

@@ -31,16 +31,16 @@ use crate::priority::{NotComputed, compute_at_low_priority, parallel_threads};
 use crate::provenance::WorkerProvenance;
 use crate::spool::{Suspended, SuspendedError};
 
-/// How a worker works.
+/// Settings of a worker.
 #[derive(Debug, Clone)]
 pub struct WorkerConfig {
-    /// Where the store lies.
+    /// Location of the store.
     pub store: StoreConfig,
-    /// Directory for temporary files, which hold what a running point records.
+    /// Directory for temporary files, which hold the records of a running point.
     pub scratch: PathBuf,
-    /// How long a point stays with a silent worker.
+    /// Duration of a lease, after which a silent worker loses its point.
     pub lease: Duration,
-    /// How long an idle worker waits before it looks for work again.
+    /// Interval at which an idle worker looks for work.
     pub poll_interval: Duration,
     /// Ends when there is nothing left to claim.
     pub drain: bool,
@@ -51,14 +51,14 @@ pub struct WorkerConfig {
     /// Simulated seconds per second at most: a point that is held back can be watched, stopped and taken over as it runs, however fast the
     /// machine is.
     pub pace: Option<f64>,
-    /// Version of the physics whose points it claims: that of this program but in tests of workers of several versions side by side.
+    /// Version of the physics whose points it claims: that of this program, except in tests of workers of several versions.
     pub physics_version: u32,
     /// Registry of counts for operators, in which this worker enters its own and those of its use of the store.
     pub registry: Option<Arc<Mutex<Registry>>>,
 }
 
 impl WorkerConfig {
-    /// The usual worker on a store, with its temporary files where the system has them.
+    /// The usual worker on a store, with its temporary files in the system's directory for them.
     pub fn new(mut store: StoreConfig) -> Self {
         store.role = Role::Worker;
         Self {
@@ -76,7 +76,7 @@ impl WorkerConfig {
     }
 }
 
-/// Why a worker ended early.
+/// Errors that end a worker.
 #[derive(Debug, thiserror::Error)]
 pub enum WorkerError {
     /// The store cannot be opened.
@@ -87,7 +87,7 @@ pub enum WorkerError {
     Heartbeat(#[from] std::io::Error),
 }
 
-/// Measures the machine, unless that was done; where it fails plans have no times.
+/// Measures the machine, unless that was done; if it fails plans have no times.
 async fn keep_speed(store: &Store, host: &str) {
     let measure = async {
         if store.machine_speed(i64::from(PHYSICS_VERSION)).await?.is_some() {
@@ -109,7 +109,7 @@ async fn keep_speed(store: &Store, host: &str) {
     }
 }
 
-/// How one point ended.
+/// End of one point.
 enum Ended {
     Computed(Result<Computation, ComputeError>),
     Panicked(String),
@@ -126,12 +126,12 @@ enum Halt {
     Timeout(Duration),
 }
 
-/// Claims and simulates points until `stop` turns true, its time is over, or nothing is left where the worker drains.
+/// Claims and simulates points until `stop` turns true, its time is over, or, if the worker drains, nothing is left.
 ///
 /// A point that is running when the worker is asked to stop is queued again with a checkpoint, and its attempt is not counted.
 ///
 /// # Errors
-/// When the store cannot be opened or the heartbeat cannot be started. Later failures of the store are logged and
+/// The store cannot be opened or the heartbeat cannot be started. Later failures of the store are logged and
 /// tried again.
 pub fn run(
     config: WorkerConfig,
@@ -158,7 +158,7 @@ async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), W
         started: 0,
         last_seen: 0,
     };
-    // Before the first claim, so that who holds a point can always be found.
+    // Before the first claim, so that the holder of a point can always be found.
     with_backoff(|| store.register_worker(&record)).await?;
     keep_speed(&store, &record.host).await;
     let metrics = Metrics::default();
@@ -234,7 +234,7 @@ async fn idle(time: Duration, stop: &mut watch::Receiver<bool>) {
     }
 }
 
-/// Returns once a stop is asked for. A closed channel means that nobody can ask for one any more.
+/// Returns once a stop is requested. A closed channel means that no request can come any more.
 async fn stopped(stop: &mut watch::Receiver<bool>) {
     if stop.wait_for(|stop| *stop).await.is_err() {
         std::future::pending::<()>().await;
@@ -251,12 +251,12 @@ struct Worker<'a> {
 }
 
 impl Worker<'_> {
-    /// How long a lease is \[ms\].
+    /// Duration of a lease \[ms\].
     fn lease_ms(&self) -> i64 {
         self.config.lease.as_millis() as i64
     }
 
-    /// Computes a point and stores what came of it. Gives the next point, where it was claimed with the result.
+    /// Computes a point and stores its outcome. Returns the next point if it was claimed with the result.
     async fn work_on(&self, claim: Claim, stop: &mut watch::Receiver<bool>) -> Option<Claim> {
         let Self { config, store, heartbeat, record, metrics } = self;
         let lease = claim.lease;
@@ -338,7 +338,7 @@ impl Worker<'_> {
     }
 
     /// Writes how a point ended. The store being out of reach is tried again for as long as the lease was renewed at the latest: after
-    /// that the point is somebody else's. Gives the next point, where it was claimed with the result.
+    /// that the point is somebody else's. Returns the next point if it was claimed with the result.
     async fn end(
         &self,
         lease: &Lease,
@@ -397,7 +397,7 @@ impl Worker<'_> {
                             summary_json: &summary,
                             provenance_json: &provenance,
                             artifacts: &artifacts,
-                            // A study of what accuracy costs measures times.
+                            // A cost study measures times.
                             is_repeatable: computed.study.is_none(),
                         };
                         if goes_on {
@@ -470,9 +470,9 @@ impl Worker<'_> {
     }
 }
 
-/// A control whose runs make so many simulated seconds per second at most.
+/// A control whose runs simulate this many seconds per second at most.
 fn paced(pace: f64) -> Control {
-    /// How soon a run that is held back notices that it is to stop.
+    /// Interval at which a run that is held back looks for a request to stop.
     const LOOK: Duration = Duration::from_millis(10);
     let started = Instant::now();
     Control::observed_by(move |control, time| {
@@ -542,7 +542,7 @@ async fn halted(
     })
 }
 
-/// Writes a suspended run as a blob, before any row refers to it; none where it cannot be written.
+/// Writes a suspended run as a blob, before any row refers to it; none if it cannot be written.
 async fn write_suspended(store: &Store, suspended: Option<&mut Suspended>) -> Option<BlobId> {
     let suspended = suspended?;
     let write = async {
@@ -557,13 +557,13 @@ async fn write_suspended(store: &Store, suspended: Option<&mut Suspended>) -> Op
         .ok()
 }
 
-/// Why a suspended run cannot be kept or taken up.
+/// Errors of keeping and resuming suspended runs.
 #[derive(Debug, thiserror::Error)]
 enum KeepError {
-    /// By its file.
+    /// Failure of its file.
     #[error(transparent)]
     File(#[from] SuspendedError),
-    /// By the store.
+    /// Failure of the store.
     #[error(transparent)]
     Store(#[from] StoreError),
 }

@@ -38,13 +38,13 @@ pub struct Computed {
     pub artifacts: Vec<EncodedArtifact>,
     /// The equilibrium in scalars.
     pub statics: StaticsSummary,
-    /// The run in time in scalars; absent where the scenario has none.
+    /// The run in time in scalars; absent if the scenario has none.
     pub transient: Option<TransientSummary>,
     /// The other members of its ensemble.
     pub ensemble: Vec<OtherMember>,
-    /// Time \[s\] at which one of them has first parted from the undisturbed one; absent where they stay together, or without an ensemble.
+    /// Time \[s\] at which one of them has first parted from the undisturbed one; absent if they stay together, or without an ensemble.
     pub histories_part_at: Option<f64>,
-    /// The cost study in place of a run, where the scenario asks for one.
+    /// The cost study in place of a run, if the scenario has one.
     pub study: Option<CostReport>,
     /// The statistics of the run from the other start, if the scenario compares both.
     pub starts: Option<StartsCompared>,
@@ -55,13 +55,13 @@ pub struct Computed {
     pub undamped_torsion: Option<UndampedTorsion>,
     /// Errors by steps and by the mesh, and spread; absent without a run in time.
     pub errors: Option<ResultErrors>,
-    /// Warnings about what was run but is probably not meant, in words.
+    /// Warnings about valid scenarios that are probably not meant, in words.
     pub warnings: Vec<String>,
     /// Versions, integrator, steps and cost.
     pub provenance: Provenance,
 }
 
-/// How far a point got.
+/// Outcome of computing a point.
 #[derive(Debug)]
 pub enum Computation {
     /// To its end.
@@ -151,7 +151,7 @@ pub fn simulated_time_total(scenario: &Scenario) -> f64 {
 /// system's directory for temporary files until the result is dropped.
 ///
 /// # Errors
-/// When the scenario is not valid, there is no equilibrium, the run diverges, it cannot write what it records, or it is cancelled.
+/// The scenario is not valid, there is no equilibrium, the run diverges, its records cannot be written, or it is cancelled.
 pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, ComputeError> {
     match compute_from(scenario, control, None, &std::env::temp_dir())? {
         Computation::Finished(computed) => Ok(*computed),
@@ -159,8 +159,8 @@ pub fn compute(scenario: &Scenario, control: &Control) -> Result<Computed, Compu
     }
 }
 
-/// Simulates one point from its start, or from where the same point was suspended; temporary files are made in the directory
-/// `scratch`. What does not fit the point is passed over: it begins again. A run's twin, the other members of an ensemble, the run from the
+/// Simulates one point from its start, or from its checkpoint if it was suspended; temporary files are made in the directory
+/// `scratch`. A file that does not fit the point is ignored: the point begins again. A run's twin, the other members of an ensemble, the run from the
 /// other start and the runs of a cost study cannot be suspended; a point that is asked to in one of them counts as cancelled.
 ///
 /// # Errors
@@ -302,7 +302,7 @@ impl<'a> Runs<'a> {
         self.run(transient.map_err(|error| self.failed(error))?, spool)
     }
 
-    /// A run that goes on where it was suspended, with its samples; none where they do not fit.
+    /// A run that continues from its checkpoint, with its samples; none if they do not fit.
     fn resumed(&self, Suspended { checkpoint, spool }: Suspended) -> Option<(Transient<'a>, Spool)> {
         let transient = Transient::resume(self.model, self.equilibrium, &checkpoint)
             .inspect_err(
@@ -332,7 +332,7 @@ impl<'a> Runs<'a> {
         })
     }
 
-    /// By how much the scenario amplifies a disturbance of a finished run.
+    /// Factor by which the scenario amplifies a disturbance of a finished run.
     fn sensitivity(&self, run: &Records<Spool>) -> Result<Option<Sensitivity>, ComputeError> {
         Sensitivity::of(self.model, self.equilibrium, run, self.control).map_err(|error| match error {
             SensitivityError::Stopped => ComputeError::Cancelled,
@@ -345,7 +345,7 @@ impl<'a> Runs<'a> {
         })
     }
 
-    /// The error of a run, beside it whether the scene itself is unstable.
+    /// Error of a run, with the stability of the scenario itself.
     fn failed(&self, error: TransientError) -> ComputeError {
         match error {
             error @ TransientError::Diverged { .. } => {
@@ -529,7 +529,7 @@ mod tests {
             assert!(once.iter().map(|name| name.quantity).eq(layout.columns.iter().copied()), "{name}");
             for node in by_node.chunk_by(|one, next| one.place == next.place) {
                 let rotation = [&columns::ROTATION_SPEED, &columns::TORQUE];
-                // Only the bit is recorded without having been asked for.
+                // Only the bit is recorded without a request.
                 let expected =
                     if node[0].place == Some(Place::Node(297)) { &rotation[..] } else { layout.by_node };
                 assert!(node.iter().map(|name| name.quantity).eq(expected.iter().copied()), "{name}");
@@ -634,7 +634,7 @@ mod tests {
         let all = Outputs::Orbits(OrbitOutputs { nodes: None, window: None, decimation: 10 });
         let some = OrbitOutputs { nodes: Some(vec![NodeChoice::Node(49)]), window: None, decimation: 10 };
         assert!(history(&[49], all, true).columns.contains_key(of_bit[1]));
-        // Whoever chooses what is kept has that alone, and without torsion the bit turns as the drive does.
+        // Chosen outputs are kept alone, and without torsion the bit turns as the drive does.
         for without in [history(&[10, 49], Outputs::Orbits(some), true), history(&[49], Outputs::Full, false)]
         {
             assert!(!without.columns.contains_key(of_bit[0]), "{:?}", without.columns.keys());
@@ -685,7 +685,7 @@ mod tests {
                 node + 1
             );
         }
-        // The plan tells the bytes of the table: those of its columns.
+        // The plan has the bytes of the table: those of its columns.
         let plan = Footprint::of(&scenario).expect("has a model");
         assert_eq!(plan.snapshot_bytes, 16 * 297 * (8 + 8 + 7 * 4));
         assert_eq!(plan.table_bytes - plan.snapshot_bytes, {

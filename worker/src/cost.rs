@@ -14,11 +14,11 @@ use rayon::prelude::*;
 use crate::error::ComputeError;
 use crate::stopwatch::Stopwatch;
 
-/// Runs the scenario's cost study (`scenario.cost_study`, or the usual one where that is absent). Progress on `control`
+/// Runs the scenario's cost study (`scenario.cost_study`, or the usual one if that is absent). Progress on `control`
 /// counts the simulated time of all runs, [`study_time`] in all.
 ///
 /// # Errors
-/// When the scenario is not valid, both methods of the reference fail, or it is cancelled.
+/// The scenario is not valid, both methods of the reference fail, or it is cancelled.
 pub fn cost_study(scenario: &Scenario, control: &Control) -> Result<CostReport, ComputeError> {
     validate(scenario).map_err(|problems| ComputeError::Invalid(problems.to_string()))?;
     let planned = plan(scenario)?;
@@ -39,7 +39,7 @@ pub fn cost_study(scenario: &Scenario, control: &Control) -> Result<CostReport, 
     Ok(report(scenario, &planned, &by_row)?)
 }
 
-/// Simulated time of all runs of the scenario's cost study \[s\]; zero where it cannot be planned.
+/// Simulated time of all runs of the scenario's cost study \[s\]; zero if it cannot be planned.
 pub fn study_time(scenario: &Scenario) -> f64 {
     let time = |row: &PlannedRow| row.members.len() as f64 * row.scenario.duration;
     plan(scenario).map_or(0.0, |planned| planned.iter().map(time).sum())
@@ -49,7 +49,7 @@ pub fn study_time(scenario: &Scenario) -> f64 {
 /// that leaves out, since their steps adapt themselves.
 ///
 /// # Errors
-/// When the study cannot be planned.
+/// The study cannot be planned.
 pub fn study_cpu_time(scenario: &Scenario, speed: &MachineSpeed) -> Result<(f64, usize), ComputeError> {
     Ok(expected_cpu_time(&plan(scenario)?, speed))
 }

@@ -9,7 +9,7 @@ use drillsweep_study::cost::StudyError;
 use serde_json::{Map, json};
 
 use crate::artifact::ArtifactError;
-/// Why a point has no result.
+/// Errors that leave a point without a result.
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {
     /// The scenario cannot be read or is out of range; the server refuses such requests, so it is of another version.
@@ -26,7 +26,7 @@ pub enum ComputeError {
     OtherStart {
         /// Its friction.
         friction: StartFriction,
-        /// Why there is none.
+        /// Its error.
         error: StaticsError,
     },
     /// The run in time cannot be set up.
@@ -37,7 +37,7 @@ pub enum ComputeError {
     Run {
         /// Observed failure.
         error: TransientError,
-        /// The verdict of the linearised equations; absent where they could not be judged.
+        /// The verdict of the linearised equations; absent if they could not be judged.
         stability: Option<Box<Stability>>,
     },
     /// A cost study has no reference to compare with.
@@ -62,7 +62,7 @@ pub enum ComputeError {
     Cancelled,
 }
 
-/// Whether an instability of the scenario explains why a run failed, in words.
+/// Verdict in words on an instability of the scenario as the cause of a failed run.
 fn verdict(error: &TransientError, stability: Option<&Stability>) -> String {
     match (error, stability) {
         (TransientError::Diverged { time, .. }, Some(stability)) => stability.of_divergence_at(*time),
@@ -74,7 +74,7 @@ fn verdict(error: &TransientError, stability: Option<&Stability>) -> String {
 }
 
 impl ComputeError {
-    /// Whether another worker, of a newer version, with a database that has been mended, with room on its disk or with more memory, may get a result.
+    /// True if another worker may get a result: one of a newer version, with a repaired database, with room on its disk, or with more memory.
     pub(crate) fn is_of_this_worker(&self) -> bool {
         matches!(
             self,
@@ -86,7 +86,7 @@ impl ComputeError {
         )
     }
 
-    /// The error as the service shows it: class, reason, and time and node where there are any.
+    /// The error as the service shows it: class, reason, and time and node if there are any.
     pub fn to_point_error(&self) -> PointError {
         let class =
             if self.is_of_this_worker() { FailureClass::Infrastructure } else { FailureClass::Physical };
@@ -106,7 +106,7 @@ impl ComputeError {
                 ]);
                 PointError { time, node, details, ..error }
             }
-            // What fails before the first step fails at its time.
+            // A failure before the first step has the time of that step.
             ComputeError::Statics(failure) | ComputeError::OtherStart { error: failure, .. } => {
                 PointError { time: Some(0.0), node: number(Some(failure.node())), ..error }
             }

@@ -26,13 +26,13 @@ pub(crate) struct Watched {
     pub(crate) verdict: Arc<Verdict>,
 }
 
-/// Why a point was asked to stop, if it was.
+/// Reason for which a point was requested to stop, if it was.
 #[derive(Debug, Default)]
 pub(crate) struct Verdict(AtomicU8);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StopReason {
-    /// Nobody asked for it.
+    /// No request.
     None,
     /// Its sweep was cancelled.
     Cancelled,

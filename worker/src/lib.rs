@@ -1,5 +1,5 @@
 //! A worker process: it claims points, simulates them one after the other, keeps their leases from a thread of its
-//! own, and stores what comes out.
+//! own, and stores the results.
 //!
 //! One process simulates one point at a time, sequentially: the numbers do not depend on how many run. The async
 //! runtime does input and output only; [`compute`] is plain code on a thread of low priority that may be cancelled

@@ -1,4 +1,4 @@
-//! How much memory this process has, of how much.
+//! Memory of this process, and its limit.
 
 use std::fs::read_to_string;
 
@@ -10,12 +10,12 @@ const NEARLY_FULL: f64 = 0.8;
 pub(crate) struct Memory {
     /// Resident memory \[bytes\].
     pub(crate) resident: u64,
-    /// Limit of it \[bytes\]: memory of the machine, or the limit of its control group if that is lower.
+    /// Its limit \[bytes\]: memory of the machine, or the limit of its control group if that is lower.
     pub(crate) limit: u64,
 }
 
 impl Memory {
-    /// The present one; none where the system does not tell it as Linux does.
+    /// The present memory; `None` on systems that do not report it as Linux does.
     pub(crate) fn now() -> Option<Self> {
         let resident = kilobytes(&read_to_string("/proc/self/status").ok()?, "VmRSS:")?;
         let machine = kilobytes(&read_to_string("/proc/meminfo").ok()?, "MemTotal:")?;

@@ -1,4 +1,4 @@
-//! Where a result comes from: which code computed it, how, where, and at what cost.
+//! Provenance of a result: code, method, machine, times and cost.
 
 use drillsweep_scenario::TimeStepping;
 use drillsweep_sim::solve::modes::UndampedTorsion;
@@ -35,7 +35,7 @@ pub struct Provenance {
     /// The torsional modes that velocity-weakening friction feeds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undamped_torsion: Option<UndampedTorsion>,
-    /// Warnings about what was run but is probably not meant, in words.
+    /// Warnings about valid scenarios that are probably not meant, in words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The worker that computed it; none of a point that is computed without a queue.
@@ -43,7 +43,7 @@ pub struct Provenance {
     pub worker: Option<WorkerProvenance>,
 }
 
-/// How a run in time was made.
+/// Provenance of a run in time.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunProvenance {
     /// Method, step, tolerance and contact iterations.
@@ -71,7 +71,7 @@ pub struct RunProvenance {
     error_estimate: ErrorEstimate,
     /// Meaning of that estimate, for people.
     error_estimate_of: &'static str,
-    /// Whether the run went on from a checkpoint.
+    /// True if the run continued from a checkpoint.
     resumed: bool,
     /// Time by the clock \[s\].
     pub transient_wall_time: f64,
@@ -97,9 +97,9 @@ pub struct WorkerProvenance {
     pub worker: String,
     /// The claim under which it was computed: grows with every claim of the same work.
     pub fencing_token: i64,
-    /// When it began, by that host's clock: for people, nothing is decided by it.
+    /// Start by that host's clock: for people, nothing is decided by it.
     pub started: Timestamp,
-    /// When it ended, likewise.
+    /// End, likewise.
     pub ended: Timestamp,
 }
 

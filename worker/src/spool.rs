@@ -21,34 +21,34 @@ const OF_BIT: [Series; 2] = [Series::ThetaZRate, Series::Torque];
 /// Bytes of a value of a snapshot.
 const VALUE: usize = size_of::<f32>();
 
-/// The last bytes of a suspended run's file, after the length of what stands before them.
+/// The last bytes of a suspended run's file, after the length of the part before them.
 const MAGIC: &[u8; 8] = b"dsweepS1";
 
 /// Histories of a run's recorded nodes and snapshots of its string in a file without a name, which vanishes with the process.
 ///
-/// The file holds block after block; a block holds for each node and each series its samples in a row, behind them those of the bit where
-/// it is recorded beside the nodes, and for each series of the snapshots their values in a row, in single precision.
+/// The file holds block after block; a block holds for each node and each series its samples in a row, behind them those of the bit if
+/// it is recorded with the nodes, and for each series of the snapshots their values in a row, in single precision.
 #[derive(Debug)]
 pub struct Spool {
     file: File,
     index: Index,
 }
 
-/// Where the samples are.
+/// Positions of the samples.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 struct Index {
     nodes: Vec<usize>,
-    /// The bit, where its rotation and torque are recorded beside the nodes.
+    /// The bit, if its rotation and torque are recorded with the nodes.
     #[serde(default)]
     bit: Option<usize>,
     /// Samples of each block.
     blocks: Vec<usize>,
-    /// Absent where there are no snapshots.
+    /// Absent if there are no snapshots.
     #[serde(default)]
     snapshots: SnapshotIndex,
 }
 
-/// Where the snapshots are.
+/// Positions of the snapshots.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 struct SnapshotIndex {
     series: Vec<SnapshotSeries>,
@@ -58,7 +58,7 @@ struct SnapshotIndex {
     blocks: Vec<usize>,
 }
 
-/// Where a block lies in the file.
+/// Position of a block in the file.
 struct Place {
     /// Its samples, by number.
     samples: Range<usize>,
@@ -72,22 +72,22 @@ struct Place {
     end: u64,
 }
 
-/// A suspended run: where it goes on, and what it has recorded.
+/// A suspended run: its checkpoint and its records.
 #[derive(Debug)]
 pub struct Suspended {
-    /// Where it goes on.
+    /// State from which it continues.
     pub checkpoint: Checkpoint,
     /// Its samples and snapshots so far.
     pub spool: Spool,
 }
 
-/// Why a suspended run cannot be read.
+/// Errors of reading a suspended run.
 #[derive(Debug, thiserror::Error)]
 pub enum SuspendedError {
     /// The file cannot be read.
     #[error("the file of a suspended run cannot be read: {0}")]
     Io(#[from] std::io::Error),
-    /// It is not what [`Suspended::to_file`] writes.
+    /// It is no file of [`Suspended::to_file`].
     #[error("not a suspended run: {0}")]
     Malformed(String),
     /// Its checkpoint is not one.
@@ -99,7 +99,7 @@ impl Spool {
     /// An empty one, in a directory.
     ///
     /// # Errors
-    /// When no file can be made there.
+    /// No file can be made there.
     pub fn new(directory: &Path) -> std::io::Result<Self> {
         Ok(Self { file: tempfile::tempfile_in(directory)?, index: Index::default() })
     }
@@ -107,7 +107,7 @@ impl Spool {
     /// Adds the samples and snapshots that follow.
     ///
     /// # Errors
-    /// When the file cannot be written, or the block is of other nodes or series than the ones before it.
+    /// The file cannot be written, or the block is of other nodes or series than the ones before it.
     pub fn append(&mut self, Block { histories, bit, snapshots }: Block<'_>) -> std::io::Result<()> {
         let nodes: Vec<usize> = histories.iter().map(|history| history.node).collect();
         if self.index.blocks.is_empty() {
@@ -146,7 +146,7 @@ impl Spool {
         Ok(())
     }
 
-    /// The bit, from 0 at the top, where its rotation and torque are recorded beside the nodes.
+    /// The bit, from 0 at the top, if its rotation and torque are recorded with the nodes.
     pub fn bit(&self) -> Option<usize> {
         self.index.bit
     }
@@ -154,7 +154,7 @@ impl Spool {
     /// Some samples of the rate of twist \[rad/s\] or of the torque \[N m\] of the [bit](Self::bit).
     ///
     /// # Errors
-    /// When the file cannot be read, or another series is asked for or there is none of the bit.
+    /// The file cannot be read, or another series is requested or there is none of the bit.
     pub fn read_bit(&self, series: Series, samples: Range<usize>) -> std::io::Result<Vec<f64>> {
         let row = OF_BIT.iter().position(|of_bit| *of_bit == series).filter(|_| self.index.bit.is_some());
         let row = row.ok_or_else(|| std::io::Error::other("a series of the bit that is not recorded"))?;
@@ -189,7 +189,7 @@ impl Spool {
     /// Some of the snapshots, by number from 0.
     ///
     /// # Errors
-    /// When the file cannot be read or there are no such snapshots.
+    /// The file cannot be read or there are no such snapshots.
     pub fn snapshots(&self, snapshots: Range<usize>) -> std::io::Result<SnapshotBlock> {
         let SnapshotIndex { series, nodes, .. } = &self.index.snapshots;
         let mut read = SnapshotBlock::new(series.clone());
@@ -221,7 +221,7 @@ fn overlap(range: &Range<usize>, block: &Range<usize>) -> Range<usize> {
 }
 
 impl SnapshotIndex {
-    /// Takes in what the next block has, which must be what those before it have.
+    /// Notes the contents of the next block, which must be those of the blocks before it.
     fn begin(&mut self, block: Option<&SnapshotBlock>) -> std::io::Result<()> {
         let series = block.map_or([].as_slice(), |block| &block.series);
         let per_snapshot = |block: &SnapshotBlock| Some(block.values.first()?.len() / block.count.max(1));
@@ -242,7 +242,7 @@ impl Index {
         self.places().last().map_or(0, |place| place.end)
     }
 
-    /// Where each block lies.
+    /// Positions of the blocks.
     fn places(&self) -> impl Iterator<Item = Place> {
         let SnapshotIndex { series, nodes, blocks } = &self.snapshots;
         // A run that was suspended by a program without snapshots has none.
@@ -286,11 +286,11 @@ impl Suspended {
     /// The whole as one file: the samples, and behind them the rest.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn to_file(&mut self) -> std::io::Result<&File> {
         let Self { checkpoint, spool: Spool { file, index } } = self;
         let parts = [checkpoint.to_bytes(), serde_json::to_vec(index).map_err(std::io::Error::other)?];
-        // What an earlier call wrote behind the samples is overwritten.
+        // Bytes of an earlier call behind the samples are overwritten.
         file.set_len(index.length())?;
         file.seek(SeekFrom::End(0))?;
         for part in &parts {
@@ -306,7 +306,7 @@ impl Suspended {
     /// The suspended run of a file.
     ///
     /// # Errors
-    /// When the file cannot be read or is not one of a suspended run.
+    /// The file cannot be read or is not one of a suspended run.
     pub fn from_file(file: File) -> Result<Self, SuspendedError> {
         let malformed = |what: &str| SuspendedError::Malformed(what.to_owned());
         let mut end = file.metadata()?.len();
@@ -346,7 +346,7 @@ mod tests {
 
     use super::*;
 
-    /// Two nodes with samples that tell node, series and number apart, from `first` on.
+    /// Two nodes with samples that differ by node, series and number, from `first` on.
     fn block(first: usize, samples: usize) -> Vec<NodeHistory> {
         let values = |node: usize, series: Series| {
             (first..first + samples)
@@ -372,7 +372,7 @@ mod tests {
         Block { histories, bit: None, snapshots: None }
     }
 
-    /// Snapshots of three nodes with values that tell series, number and node apart, from `first` on.
+    /// Snapshots of three nodes with values that differ by series, number and node, from `first` on.
     fn snapshots(first: usize, count: usize) -> SnapshotBlock {
         let series = vec![SnapshotSeries::U, SnapshotSeries::NormalForce];
         let values = |series: usize| {

@@ -77,7 +77,7 @@ impl Row {
 /// The point's scalars under flat names; a name ends in the node's number, or the depth for which it is recorded, if it belongs to a node, and in `_wK`
 /// if it belongs to the scenario's K-th spectrum window.
 ///
-/// Of an ensemble the values are those of the undisturbed member; `ensemble_mean_` and `spread_` before a name make it the
+/// The values of an ensemble are those of the undisturbed member; `ensemble_mean_` and `spread_` before a name make it the
 /// mean and the standard deviation over all members. A row with one member says so, and has no spread.
 pub(crate) fn summary_row(
     statics: &StaticsSummary,
@@ -135,7 +135,7 @@ pub(crate) fn summary_row(
     row
 }
 
-/// How names of columns write a recorded node: by its number, or by the depth for which it is recorded.
+/// A recorded node in names of columns: its number, or the depth for which it is recorded.
 fn place(choice: NodeChoice) -> String {
     match choice {
         NodeChoice::Node(node) => node.to_string(),
@@ -336,7 +336,7 @@ fn history(
     EncodedArtifact::pieces(tables::HISTORY.name, &piece(0..0)?, scratch, pieces)
 }
 
-/// A row a node, from the top, snapshot after snapshot, in single precision; none where none were asked for.
+/// A row a node, from the top, snapshot after snapshot, in single precision; none if none were requested.
 fn snapshots(
     model: &Model,
     records: &Records<Spool>,

@@ -1,4 +1,4 @@
-//! Which error of a cost study a diagram shows.
+//! Errors of a cost study that a diagram can show.
 
 use std::str::FromStr;
 
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
-    /// Of the orbit's size, over the orbit window.
+    /// Error of the orbit's size, over the orbit window.
     OrbitSize,
-    /// Of the standard deviation of the distance from the hole's axis, over the orbit window.
+    /// Error of the standard deviation of the distance from the hole's axis, over the orbit window.
     RadiusDeviation,
-    /// Of the trajectory, up to where histories part.
+    /// Error of the trajectory, until histories part.
     Trajectory,
 }
 
@@ -22,13 +22,13 @@ impl Measure {
     /// All measures, the usual ones first.
     const ALL: [Measure; 3] = [Measure::OrbitSize, Measure::RadiusDeviation, Measure::Trajectory];
 
-    /// Orbit size; the deviation of the radius, or else trajectories, where no run has an error of orbit size to show.
+    /// Orbit size; the deviation of the radius, or else trajectories, if no run has an error of orbit size to show.
     pub fn usual(report: &CostReport) -> Self {
         let has_any = |measure: &Measure| report.compared().any(|row| measure.of(row) > 0.0);
         Measure::ALL.into_iter().find(has_any).unwrap_or(Measure::OrbitSize)
     }
 
-    /// The size of a run's error, relative; zero, which no diagram shows, where it has none.
+    /// The size of a run's error, relative; zero, which no diagram shows, if it has none.
     pub fn of(self, row: &CostRow) -> f64 {
         let bias = |quantity| Some(row.errors.as_ref()?.statistic(quantity)?.bias.abs());
         let error = match self {

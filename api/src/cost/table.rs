@@ -6,9 +6,9 @@ use drillsweep_study::cost::{
 };
 use drillsweep_table::{Column, Table};
 
-/// One row a line of the study: its `role` (`reference`, `method`, `start`, `mesh` or `effect`), what it was, what it took, its errors against
-/// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none. Where a whole
-/// error was asked for, `mesh_error` is what a mesh is off by, and a last row of the role `total` is the mesh and method chosen, with the parts of
+/// One row a line of the study: its `role` (`reference`, `method`, `start`, `mesh` or `effect`), its settings, its cost, its errors against
+/// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none. If a whole
+/// error was requested, `mesh_error` is the error of a mesh, and a last row of the role `total` is the mesh and method chosen, with the parts of
 /// its error and the time expected for the scenario's own duration.
 pub fn table(report: &CostReport) -> Table {
     let total = report.total.as_ref();

@@ -53,7 +53,7 @@ pub(super) fn resolve(
     Ok(None)
 }
 
-/// Sets the swept fields to the values of the first point; false where one of them is no numeric field.
+/// Sets the swept fields to the values of the first point; false if one of them is no numeric field.
 pub(super) fn set_fields(
     request: &SweepRequest,
     layout: &Layout<'_>,
@@ -75,7 +75,7 @@ pub(super) fn set_fields(
 }
 
 /// The problems of the scenario itself, when the axes cannot be expanded: a sweep's other mistakes are not
-/// kept back until its axes are right. What the axes would replace is not looked at.
+/// kept back until its axes are right. Values that the axes would replace are not checked.
 pub(super) fn check_without_axes(
     request: &SweepRequest,
     written: &Written<'_>,

@@ -12,7 +12,7 @@ use crate::problem::FieldProblem;
 /// Points up to which a dry run looks up results at each named accuracy: each takes as many keys again.
 const OTHER_ACCURACIES: usize = 5000;
 
-/// Keys of points, each with that of the same point with everything kept, where it keeps less.
+/// Keys of points, each with that of the same point with everything kept, if it keeps less.
 pub type PointKeys = Vec<(PointKey, Option<PointKey>)>;
 
 /// Expansion of a request: one scenario, and the changes of each point to it.
@@ -24,9 +24,9 @@ pub struct Expansion {
     pub axes: Vec<AxisName>,
     /// The points, by ordinal.
     pub points: Vec<SweepPoint>,
-    /// The reference runs that verify some of the points, as [`Expansion::references`] gives them, where the request wants some.
+    /// The reference runs that verify some of the points, as [`Expansion::references`] gives them, if the request wants some.
     pub verification: Option<Box<Expansion>>,
-    /// Warnings about what can be simulated but is probably not meant, with JSON Pointers into the request.
+    /// Warnings about valid requests that are probably not meant, with JSON Pointers into the request.
     pub warnings: Vec<FieldProblem>,
 }
 
@@ -41,8 +41,8 @@ impl Expansion {
         scenario
     }
 
-    /// The keys that the points would have at each named accuracy, by its name, each with that of the same point in full where it keeps
-    /// less. None of more than 5000 points, and where an axis is of the accuracy itself.
+    /// The keys that the points would have at each named accuracy, by its name, each with that of the same point in full if it keeps
+    /// less. None of more than 5000 points, and if an axis is of the accuracy itself.
     pub fn keys_by_accuracy(&self) -> Option<IndexMap<&'static str, PointKeys>> {
         let is_of_accuracy = |axis: &AxisName| axis.scenario_path().starts_with("accuracy.");
         if self.points.len() > OTHER_ACCURACIES || self.axes.iter().any(is_of_accuracy) {
@@ -91,7 +91,7 @@ pub struct SweepPoint {
     pub values: Vec<f64>,
     /// Content hash of physics version and scenario: equal keys, equal results.
     pub key: PointKey,
-    /// The key of the same point with everything kept, where this one keeps less: its result will do.
+    /// The key of the same point with everything kept, if this one keeps less: its result will do.
     pub fuller_key: Option<PointKey>,
 }
 
@@ -226,7 +226,7 @@ mod tests {
                 .unwrap();
             assert_eq!(expansion.scenario(point), scenario);
             assert_eq!(point.key, key(&scenario));
-            // What is stored of the point is the point.
+            // The stored form of the point gives the point.
             let changes = Value::Object(expansion.changes(point)).to_string();
             assert_eq!(compose(&expansion.base.to_json(), &changes).unwrap(), scenario);
         }

@@ -1,4 +1,4 @@
-//! How many points a request has, and which values the axes have at each, by its design.
+//! Number of points of a request, and values of the axes at each, by its design.
 
 use std::collections::HashMap;
 
@@ -14,7 +14,7 @@ use crate::problem::pointer_token;
 use crate::request::{Design, SweepRequest};
 use crate::service::LIMITS;
 
-/// How the points of a request get their values.
+/// Assignment of values to the points of a request.
 pub(super) struct Layout<'a> {
     request: &'a SweepRequest,
     pub(super) names: Vec<AxisName>,
@@ -32,7 +32,7 @@ enum Draw {
 }
 
 impl<'a> Layout<'a> {
-    /// Checks design and axes against each other; what is wrong is noted.
+    /// Checks design and axes against each other; problems are noted.
     pub(super) fn new(request: &'a SweepRequest, problems: &mut Found) -> Option<Self> {
         let before = problems.len();
         let design = request.design;
@@ -48,7 +48,7 @@ impl<'a> Layout<'a> {
             }
             match axis {
                 Axis::Range { count, .. } if design.is_drawn() => {
-                    let detail = "is not given in this design: `samples` says how many points there are";
+                    let detail = "is not given in this design: `samples` is the number of points";
                     problems.push(format!("{pointer}/count"), Some((*count).into()), detail);
                 }
                 Axis::Interval { .. } if !design.is_drawn() => {
@@ -117,7 +117,7 @@ impl<'a> Layout<'a> {
         indices
     }
 
-    /// Where in the request the value of an axis at point `number` is written.
+    /// Pointer to the member of the request that has the value of an axis at point `number`.
     pub(super) fn pointer(&self, number: usize, axis: usize) -> String {
         let name = &self.names[axis];
         match (self.request.design, self.request.axes.get(name)) {
@@ -129,7 +129,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Where in the request a field of the scenario is decided at point `number`, if by an axis.
+    /// Pointer to the member of the request that decides a field of the scenario at point `number`, if an axis does.
     pub(super) fn place(&self, number: usize, path: &str) -> Option<String> {
         let axis = self.names.iter().position(|name| name.scenario_path() == path)?;
         Some(self.pointer(number, axis))
@@ -147,7 +147,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Whether members are given that the design does not know, or not given that it needs.
+/// Finds members that the design does not know, and those that it lacks.
 fn check_design_members(request: &SweepRequest, problems: &mut Found) {
     let design = request.design;
     if design == Design::List {

@@ -1,4 +1,4 @@
-//! The members of a request beside its scenario and axes: name, owner, priority, tags, verification.
+//! Members of a request other than its scenario and axes: name, owner, priority, tags, verification.
 
 use std::collections::BTreeSet;
 

@@ -131,7 +131,7 @@ pub(crate) mod tests {
         let added = super::expand_added(&body("mud.flow_rate"), &body("flow_rate"), UNINTERRUPTED).unwrap();
         let names: Vec<&str> = added.axes.iter().map(crate::AxisName::as_str).collect();
         assert_eq!(names, ["contact.stiffness", "flow_rate"]);
-        // What is not swept has its name, too, once.
+        // Parameters that are not swept have one name, too.
         let parameters: Vec<(String, f64)> = added.parameters(&added.points[0]).into_iter().collect();
         let density = added.base.mud.unwrap().density;
         let wanted = [("contact.stiffness", 1e6), ("flow_rate", 0.03), ("mud_density", density)];

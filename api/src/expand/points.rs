@@ -11,7 +11,7 @@ use super::problems::{Found, Written};
 use crate::axis::AxisName;
 use crate::problem::ProblemDetails;
 
-/// All points. The first is validated in full, the others where the axes may have made a difference.
+/// All points. The first is validated in full, the others if the axes may have made a difference.
 ///
 /// # Errors
 /// The error of the interruption.

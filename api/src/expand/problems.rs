@@ -50,7 +50,7 @@ impl Found {
         self.0.len() >= MOST_PROBLEMS
     }
 
-    /// How many there are.
+    /// Number of problems.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }

@@ -32,7 +32,7 @@ impl Expansion {
     }
 }
 
-/// The reference runs of [`Expansion::references`]; what is wrong is noted at this pointer. The first is validated in full, the others where the axes may have made a
+/// The reference runs of [`Expansion::references`]; problems are noted at this pointer. The first is validated in full, the others if the axes may have made a
 /// difference.
 pub(super) fn references(
     expansion: &Expansion,
@@ -126,7 +126,7 @@ mod tests {
             let changes = serde_json::to_string(&references.changes(reference)).unwrap();
             assert_eq!(compose(&stored(references), &changes).unwrap(), wanted);
         }
-        // Who asks for that very point asks for the same work.
+        // A request for that very point has the same work.
         let first = &references.points[0];
         let asked = json!({"preset": "paper-200m", "outputs": "summary", "set": {
             "accuracy": "reference", "mud.flow_rate": first.values[0], "mud.density": first.values[1]}});
@@ -134,7 +134,7 @@ mod tests {
         assert_eq!((asked.points[0].key, asked.points[0].fuller_key), (first.key, first.fuller_key));
         assert_eq!(asked.verification, None);
 
-        // What is swept of the accuracy itself does not reach the reference.
+        // Axes of the accuracy itself do not reach the reference.
         let steps = json!({"preset": "paper-200m", "verify": 2, "set": {"accuracy": {"integrator": "esdirk4", "step": 1e-3}},
             "axes": {"accuracy.step": {"values": [1e-3, 5e-4]}}});
         let references = expand(&request(steps)).unwrap().verification.unwrap();
@@ -158,7 +158,7 @@ mod tests {
             assert_eq!((pointer.as_str(), got), ("/verify", None));
             assert!(detail.contains(said), "{detail}");
         }
-        // Beside other problems only what is wrong with the wish itself.
+        // With other problems, only those of the request for verification itself.
         assert_eq!(pointers(of(json!(0.5), json!({"duration": -1}))), ["/set/duration"]);
     }
 }

@@ -4,7 +4,7 @@ use drillsweep_quantity::columns;
 use drillsweep_table::{Column, Table};
 use serde::Deserialize;
 
-/// Which rows of a history stay where at most so many are asked for.
+/// Choice of the rows of a history that stay if at most a number of them is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -17,8 +17,8 @@ pub enum Decimation {
     Minmax,
 }
 
-/// At which stride the rows of a window are kept so that at most `max_points` of its `samples` stay: the smallest one; 1 where that is
-/// not asked for.
+/// Stride at which the rows of a window are kept so that at most `max_points` of its `samples` stay: the smallest one; 1 if that is
+/// not requested.
 pub fn stride(samples: usize, max_points: Option<usize>) -> usize {
     max_points.map_or(1, |max_points| samples.div_ceil(max_points.max(1)).max(1))
 }
@@ -26,7 +26,7 @@ pub fn stride(samples: usize, max_points: Option<usize>) -> usize {
 /// The rows with the extremes of each column, chosen from the rows of a history as they come.
 ///
 /// The history is cut into as many runs of rows as `max_points` allows, of equal number to within one; of each run the rows stay that have
-/// the smallest and the largest value of a column other than `time`, the first of them where several have it.
+/// the smallest and the largest value of a column other than `time`, the first of them if several have it.
 #[derive(Debug)]
 pub struct Extremes {
     rows: usize,
@@ -34,7 +34,7 @@ pub struct Extremes {
     /// The run that rows are added to, and the row that comes next.
     run: usize,
     next: usize,
-    /// Of each column that counts, its place, and the rows of the run so far with its smallest and largest value.
+    /// Place of each column that counts, and the rows of the run so far with its smallest and largest value.
     columns: Vec<(usize, Option<Ends>)>,
     kept: Vec<usize>,
 }
@@ -48,7 +48,7 @@ impl Extremes {
         2 * counted(layout).len()
     }
 
-    /// For a history of so many `rows` in the columns of `layout`, of which at most `max_points` stay.
+    /// Selection from a history of `rows` in the columns of `layout`, of which at most `max_points` stay.
     pub fn new(layout: &Table, rows: usize, max_points: usize) -> Self {
         let columns: Vec<_> = counted(layout).into_iter().map(|place| (place, None)).collect();
         let runs = (max_points / (2 * columns.len()).max(1)).max(1);
@@ -95,14 +95,14 @@ impl Extremes {
         of_run.sort_unstable();
         of_run.dedup();
         self.kept.extend(of_run);
-        // Of fewer rows than runs some runs are empty.
+        // Some runs are empty if there are fewer rows than runs.
         while self.run + 1 < self.runs && self.next >= (self.run + 1) * self.rows / self.runs {
             self.run += 1;
         }
     }
 }
 
-/// Places of the columns whose extremes count: all but `time`, and that where there is no other.
+/// Indices of the columns whose extremes count: all but `time`, or `time` if there is no other.
 fn counted(layout: &Table) -> Vec<usize> {
     let others: Vec<usize> = (0..layout.columns.len()).filter(|place| !is_time(layout, *place)).collect();
     if others.is_empty() { (0..layout.columns.len()).collect() } else { others }

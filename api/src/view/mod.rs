@@ -1,4 +1,4 @@
-//! Views of results: pure functions from the columns of a run's tables to what a client asked to see.
+//! Views of results: pure functions from the columns of a run's tables to the requested form.
 
 pub mod history;
 pub mod node;

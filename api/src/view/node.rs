@@ -1,4 +1,4 @@
-//! Which of the recorded nodes a client means.
+//! Recorded node that a client requests.
 
 use drillsweep_quantity::{Name, columns};
 
@@ -9,7 +9,7 @@ pub fn recorded<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
     of_columns(names, |name| name.quantity == &columns::U)
 }
 
-/// The nodes of which a history holds anything, likewise: those, and the bit where its rotation and torque stand beside them.
+/// The nodes of which a history holds anything, likewise: those, and the bit if the history has its rotation and torque.
 pub fn with_columns<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<u32> {
     of_columns(names, |_| true)
 }
@@ -54,10 +54,10 @@ impl Recorded {
     }
 }
 
-/// One node, as it is asked for.
+/// Request for one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Choice {
-    /// By number, 1 at the top.
+    /// Number of the node, 1 at the top.
     Node(u32),
     /// The one at this measured depth \[m\], to within half an element.
     At(f64),
@@ -69,7 +69,7 @@ impl Choice {
     /// The choice that query parameters make; `nearest` takes the nearest recorded node to a depth.
     ///
     /// # Errors
-    /// When both `node` and `depth` are given, or none, or `nearest` without a depth.
+    /// Both `node` and `depth` are given, or none, or `nearest` without a depth.
     pub fn from_parameters(
         node: Option<u32>,
         depth: Option<f64>,
@@ -90,7 +90,7 @@ impl Choice {
     /// The recorded node that is meant.
     ///
     /// # Errors
-    /// A problem that lists the recorded nodes, when the one asked for is not among them.
+    /// A problem that lists the recorded nodes, if the requested one is not among them.
     pub fn among(self, recorded: &[Recorded]) -> Result<Recorded, Box<ProblemDetails>> {
         let nearest = |depth: f64| {
             let distance = |node: &Recorded| (node.measured_depth - depth).abs();

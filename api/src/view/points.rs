@@ -18,19 +18,19 @@ use crate::point::PointState;
 pub struct PointSummary {
     /// Number of the point in its sweep, from 1.
     pub ordinal: u32,
-    /// Where the point stands.
+    /// State of the point.
     pub state: PointState,
     /// Its parameters, by axis name.
     pub parameters: IndexMap<String, f64>,
     /// The scalar results, if there are any: a JSON object.
     pub summary: Option<String>,
-    /// The bias of its statistics, by their names, where it is verified.
+    /// The bias of its statistics, by their names, if it is verified.
     pub biases: IndexMap<String, f64>,
-    /// Why it failed, if it did.
+    /// Reason of its failure, if it failed.
     pub error: Option<PointError>,
 }
 
-/// The table of a sweep as it is put together point by point, so that besides it only the point at hand is in memory. Summaries go into
+/// The table of a sweep as it is put together point by point, so that in addition only the current point is in memory. Summaries go into
 /// their columns as they are parsed: of a hundred thousand points they are hundreds of megabytes.
 ///
 /// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, of points that are verified the bias of each
@@ -44,9 +44,9 @@ pub struct PointsTable {
     ordinals: Vec<Option<i64>>,
     states: Vec<Option<String>>,
     parameters: IndexMap<String, Vec<f64>>,
-    /// Columns of the summaries' fields, as far as these have a value; none where no point has one yet.
+    /// Columns of the summaries' fields, as far as these have a value; none if no point has one yet.
     fields: IndexMap<String, Option<Column>>,
-    /// The fields whose values are kept; none where all are.
+    /// The fields whose values are kept; none if all are.
     kept: Option<HashSet<String>>,
     biases: IndexMap<String, Vec<f64>>,
     errors: Vec<Option<String>>,
@@ -65,7 +65,7 @@ impl PointsTable {
     /// Adds the row of a point.
     ///
     /// # Errors
-    /// When its summary is no JSON object.
+    /// Its summary is no JSON object.
     pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
         let row = self.ordinals.len();
         self.ordinals.push(Some(point.ordinal.into()));
@@ -163,7 +163,7 @@ fn widened<'c>(field: &'c mut Option<Column>, value: &Value) -> Option<&'c mut C
     field.as_mut()
 }
 
-/// Missing values up to so many rows.
+/// Missing values up to this many rows.
 fn fill(column: &mut Column, rows: usize) {
     match column {
         Column::Integer(values) => values.resize(rows, None),
@@ -184,7 +184,7 @@ fn texts(column: &mut Column) -> Vec<Option<String>> {
     }
 }
 
-/// Where the fields of a point's summary go.
+/// Columns of the fields of a point's summary.
 struct Fields<'t> {
     columns: &'t mut IndexMap<String, Option<Column>>,
     kept: Option<&'t HashSet<String>>,

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-/// When the snapshots of a run were taken: at equal intervals of time.
+/// Times of the snapshots of a run, at equal intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SnapshotTimes {
     /// Time of the first \[s\].
     pub first: f64,
     /// Time of the last \[s\].
     pub last: f64,
-    /// How many there are.
+    /// Number of snapshots.
     pub count: usize,
 }
 
@@ -19,7 +19,7 @@ impl SnapshotTimes {
         self.first + index as f64 * self.interval()
     }
 
-    /// From one to the next \[s\]; 1 where there are not two.
+    /// From one to the next \[s\]; 1 if there are not two.
     pub fn interval(&self) -> f64 {
         match self.count {
             0 | 1 => 1.0,
@@ -27,7 +27,7 @@ impl SnapshotTimes {
         }
     }
 
-    /// Those in a half-open window \[from, to) of simulated time \[s\], by number from 0; an absent end is open.
+    /// Snapshots in a half-open window \[from, to) of simulated time \[s\], by number from 0; an absent end is open.
     ///
     /// A snapshot within a hundredth of an interval of an end counts as lying on it.
     pub fn window(&self, from: Option<f64>, to: Option<f64>) -> Range<usize> {

@@ -18,23 +18,23 @@ const MOST_TRANSFORMED: usize = 1 << 25;
 /// Samples of a window at least.
 const FEWEST_SAMPLES: usize = 8;
 
-/// Length of a window \[s\] where none is asked for, but in a short history: a resolution of a quarter of a hertz.
+/// Default length of a window \[s\], except in a short history: a resolution of a quarter of a hertz.
 const USUAL_WINDOW: f64 = 4.0;
 
-/// Windows from the beginning to the end of a history, where no step is asked for, at most.
+/// Windows from the beginning to the end of a history, if no step is requested, at most.
 const USUAL_WINDOWS: f64 = 200.0;
 
-/// By what part of itself a frequency may be off by rounding.
+/// Relative error of a frequency by rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Which spectrogram is wanted.
+/// Request for a spectrogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrogramRequest {
     /// Weighting of the samples in each window.
     pub weighting: Weighting,
-    /// Length of a window \[s\]; absent means 4 s, and a quarter of the history where that is shorter.
+    /// Length of a window \[s\]; absent means 4 s, and a quarter of the history if that is shorter.
     pub window: Option<f64>,
-    /// From the beginning of a window to that of the next \[s\]; absent means an eighth of a window, and more where that would be over 200
+    /// From the beginning of a window to that of the next \[s\]; absent means an eighth of a window, and more if that would be over 200
     /// windows.
     pub step: Option<f64>,
     /// Frequencies from minus to plus this \[Hz\].
@@ -46,7 +46,7 @@ pub struct SpectrogramRequest {
 /// `windows`, the number of them, `samples` of each, `window_s` and `step_s` as taken, `resolution` \[Hz\], and `window`, the weighting.
 ///
 /// # Errors
-/// When a window holds too few samples or is longer than the motion, or the spectrogram would be too large; of the query's parameters.
+/// A window holds too few samples or is longer than the motion, or the spectrogram would be too large; of the query's parameters.
 pub fn spectrogram(motion: &Motion<'_>, request: &SpectrogramRequest) -> Result<Table, Box<ProblemDetails>> {
     let cut = Cut::new(motion, request)?;
     // A frequency at its end belongs to the range whatever the rounding of the recording times.
@@ -78,7 +78,7 @@ pub fn spectrogram(motion: &Motion<'_>, request: &SpectrogramRequest) -> Result<
         .attribute("window", json!(request.weighting)))
 }
 
-/// How a motion is cut into windows.
+/// Windows of a motion.
 struct Cut {
     /// Samples per second \[Hz\].
     rate: f64,
@@ -98,7 +98,7 @@ impl Cut {
         };
         let all = motion.time.len();
         let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else {
-            return refused("from", None, "there are no samples from there on".to_owned());
+            return refused("from", None, "the history has no samples from then on".to_owned());
         };
         if all < FEWEST_SAMPLES {
             let detail = format!("there are {all} samples; a window needs {FEWEST_SAMPLES} or more");
@@ -121,14 +121,14 @@ impl Cut {
         if amplitudes > MOST_AMPLITUDES {
             let detail = format!(
                 "{windows} windows of {} frequencies would be {amplitudes} amplitudes, and a spectrogram has at most {MOST_AMPLITUDES}: \
-                 ask for a longer step, a shorter window or a smaller range_hz",
+                 give a longer step, a shorter window or a smaller range_hz",
                 bins.min(samples)
             );
             return refused("step_s", request.step, detail);
         }
         if windows.saturating_mul(samples) > MOST_TRANSFORMED {
             let detail = format!(
-                "{windows} windows of {samples} samples are more than {MOST_TRANSFORMED} samples to transform: ask for a longer step or a \
+                "{windows} windows of {samples} samples are more than {MOST_TRANSFORMED} samples to transform: give a longer step or a \
                  shorter window"
             );
             return refused("step_s", request.step, detail);

@@ -10,7 +10,7 @@ use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
 pub use drillsweep_sim::math::signal::{FullSpectrum, Window as Weighting};
 
-/// Two lines closer than so many bins are one: the rest is its leakage.
+/// Two lines closer than this many bins are one: the rest is its leakage.
 const LINE_WIDTH_BINS: f64 = 2.0;
 
 /// The full spectrum of all samples of a motion, within plus and minus `range` \[Hz\]: columns `frequency`
@@ -20,7 +20,7 @@ const LINE_WIDTH_BINS: f64 = 2.0;
 /// and `whirl`.
 ///
 /// # Errors
-/// When there are too few samples to have a rate.
+/// There are too few samples to have a rate.
 pub fn spectrum(
     motion: &Motion<'_>,
     weighting: Weighting,
@@ -48,10 +48,10 @@ pub struct KeptWindow {
 }
 
 impl KeptWindow {
-    /// The one of `kept` that is asked for; an end that leaves no doubt may be left out.
+    /// The requested one of `kept`; an end may be left out if the other identifies it.
     ///
     /// # Errors
-    /// A problem that lists what was kept, when the one asked for is not among it.
+    /// A problem that lists the kept windows, if the requested one is not among them.
     pub fn choose(
         kept: &[KeptWindow],
         from: Option<f64>,
@@ -115,7 +115,7 @@ pub fn part(whole: &FullSpectrum, range: f64, peaks: usize) -> Table {
 }
 
 /// Says in a table of [`part`] up to which frequency \[Hz\] the run's steps resolve vibrations: the attribute `resolved_hz`, and of each of the
-/// `peaks` whether it `is_resolved`. Unchanged where that is not known.
+/// `peaks` whether it `is_resolved`. Unchanged if that is not known.
 #[must_use]
 pub fn mark_resolved(mut table: Table, resolved_hz: Option<f64>) -> Table {
     let Some(resolved_hz) = resolved_hz else { return table };
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(peaks.len(), expected.len());
         for (peak, (whirl, frequency, amplitude)) in peaks.iter().zip(expected) {
             assert_eq!(peak["whirl"], whirl);
-            // All lines fall on bins, so that what is left is rounding.
+            // All lines fall on bins, so that the rest is rounding.
             assert!((peak["frequency"].as_f64().unwrap() - frequency).abs() < 1e-9, "{peak}");
             assert!((peak["amplitude"].as_f64().unwrap() - amplitude).abs() < 1e-12, "{peak}");
             assert!((peak["peak_to_peak"].as_f64().unwrap() - 2.0 * amplitude).abs() < 1e-12, "{peak}");

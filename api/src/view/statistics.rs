@@ -1,4 +1,4 @@
-//! Where the orbits of a window lie and how large they are.
+//! Positions and sizes of the orbits of a window.
 
 use drillsweep_quantity::columns;
 use drillsweep_sim::math::signal::{OrbitStatistics, orbit_statistics};
@@ -20,7 +20,7 @@ impl StatisticsTable {
     /// Adds a node with all samples of its motion.
     ///
     /// # Errors
-    /// When there are none.
+    /// There are none.
     pub fn push(
         &mut self,
         node: u32,

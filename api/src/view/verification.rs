@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::point::PointState;
 
-/// Lengths below this \[m\] are what rounding and the iteration of the equilibrium leave of no motion at all: they have no bias.
+/// Lengths below this \[m\] are residuals of rounding and of the iteration of the equilibrium, without motion: they have no bias.
 const LEAST_LENGTH: f64 = 1e-9;
 
 /// A statistic of a node whose bias is reported.
@@ -69,15 +69,15 @@ pub struct VerifiedPoint {
     pub parameters: IndexMap<String, f64>,
     /// The point's own, once it has a result.
     pub statistics: Option<Statistics>,
-    /// Where the reference run stands.
+    /// State of the reference run.
     pub state: PointState,
     /// The reference run's, once it has a result.
     pub reference: Option<Statistics>,
-    /// Why the reference run failed, if it did.
+    /// Reason of the reference run's failure, if it failed.
     pub error: Option<PointError>,
 }
 
-/// Statistics whose bias is reported, by their names in a summary: read from one, what else it has being skipped. Of ensembles they
+/// Statistics whose bias is reported, by their names in a summary: read from one, its other members being skipped. Of ensembles they
 /// are the means over the members, which the spread of histories troubles least.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics(IndexMap<String, f64>);
@@ -155,7 +155,7 @@ pub struct StatisticBias {
     pub verified: usize,
     /// Mean of the biases: relative to the reference, or in Hz of frequencies.
     pub mean: f64,
-    /// Where the mean over all points lies with 95 % confidence, as far as biases scatter like normal ones (Student's t); absent for
+    /// 95 % confidence interval of the mean over all points, if biases are normally distributed (Student's t); absent for
     /// a single point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<[f64; 2]>,
@@ -166,7 +166,7 @@ pub struct StatisticBias {
     /// Promise of the sweep's accuracy; absent if it promises nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promised: Option<f64>,
-    /// Points whose bias exceeds what is promised.
+    /// Points whose bias exceeds the promise.
     pub exceeding: usize,
 }
 
@@ -190,7 +190,7 @@ pub struct WorstBias {
 pub struct Findings {
     /// Statistics by their names in the summary.
     pub statistics: IndexMap<String, StatisticBias>,
-    /// Where biases exceed what is promised, in words.
+    /// Biases beyond the promise, in words.
     pub warnings: Vec<String>,
 }
 
@@ -339,7 +339,7 @@ pub fn verification(points: &[VerifiedPoint], findings: &Findings) -> Table {
     table.with(&columns::ERROR, Column::Text(points.iter().map(error).collect()))
 }
 
-/// Whether a column of a table is the bias of a statistic.
+/// True if a column of a table is the bias of a statistic.
 pub fn is_bias_column(name: &str) -> bool {
     Variant::Bias.strip(name).is_some_and(|statistic| Statistic::of(statistic).is_some())
 }
@@ -379,7 +379,7 @@ mod tests {
         assert_eq!(of("orbit_radius_rms_49", 3e-15, 1e-15), None);
         assert_eq!(of("orbit_radius_rms_49", 1e300, 1e-9), None, "beyond all numbers");
         assert_eq!(of("contact_count", 3.0, 4.0), None);
-        // What one of the two has not, and what is not there yet.
+        // Statistics that one of the two lacks, and runs without a result yet.
         assert!(point(1, json!({"orbit_radius_rms_49": 1.0}), json!({})).biases().is_empty());
         assert!(
             point(1, json!({"orbit_radius_rms_49": null}), json!({"orbit_radius_rms_49": 1.0}))

@@ -1,6 +1,6 @@
-//! Axes of plots: from values to places, and where the ticks are.
+//! Axes of plots: positions of values and of ticks.
 
-/// How much longer than the values an axis is at each end, as a part of the span of the values.
+/// Length of an axis beyond the values at each end, as a part of the span of the values.
 const PADDING: f64 = 0.06;
 /// The largest magnitude on a linear axis, so that no span overflows.
 const LARGEST: f64 = 1e300;
@@ -16,7 +16,7 @@ pub struct PlotAxis {
     /// The ends: decimal logarithms of values if the scale is logarithmic, else the values.
     low: f64,
     high: f64,
-    /// Whether it runs from its high end to its low one.
+    /// True if it runs from its high end to its low one.
     is_flipped: bool,
 }
 
@@ -94,7 +94,7 @@ impl PlotAxis {
     }
 
     /// The ticks, from low to high. On a logarithmic axis decades are labelled, as are 2 and 5 times the
-    /// decade where there are few decades.
+    /// decade if there are few decades.
     pub fn ticks(&self) -> Vec<Tick> {
         match self.scale {
             Scale::Logarithmic => self.logarithmic_ticks(),
@@ -168,7 +168,7 @@ impl Scale {
     }
 }
 
-/// A value in three digits: plain where that is short, else in powers of ten.
+/// A value in three digits: plain if that is short, else in powers of ten.
 pub(crate) fn three_digits(value: f64) -> String {
     let magnitude = value.abs();
     let text = if value == 0.0 {

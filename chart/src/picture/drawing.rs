@@ -44,7 +44,7 @@ pub(super) enum Shape {
     Rectangle(Rectangle, Stroke),
     /// A rectangle full of one colour.
     Filled(Rectangle, Colour),
-    /// White that lets little of what is below show through, for text to stand on.
+    /// Nearly opaque white, as a background of text.
     Ground(Rectangle),
     Polyline(Vec<Position>, Stroke),
     Marker(Position, Marker, Colour),
@@ -58,7 +58,7 @@ pub(super) struct Mosaic {
     pub(super) area: Rectangle,
     /// Cells across and down.
     pub(super) size: [usize; 2],
-    /// By colour the runs of cells: row from the top, first column, number of cells.
+    /// Runs of cells by colour: row from the top, first column, number of cells.
     pub(super) runs: Vec<(Colour, Vec<[usize; 3]>)>,
 }
 

@@ -9,7 +9,7 @@ const TITLE_SIZE: f64 = 17.0;
 const TITLE_ROW: f64 = 22.0;
 const SUBTITLE_SIZE: f64 = 12.5;
 const SUBTITLE_ROW: f64 = 15.0;
-/// Lines of a title, or of what stands below it, before it is cut: names of sweeps may be of any length.
+/// Lines of a title, or of the text below it, before it is cut: names of sweeps may be of any length.
 const MOST_LINES: usize = 3;
 const LEGEND_SIZE: f64 = 13.0;
 const LEGEND_ROW: f64 = 22.0;
@@ -24,7 +24,7 @@ pub(super) struct Entry {
     sample: Sample,
 }
 
-/// How the legend shows what it names.
+/// Symbol of a series in the legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sample {
     Line(Option<Marker>),
@@ -43,7 +43,7 @@ impl Entry {
     }
 }
 
-/// Adds the title, in as many lines as it needs up to [`MOST_LINES`], and gives its text and where it ends; an empty one takes no room.
+/// Adds the title, in as many lines as it needs up to [`MOST_LINES`], and returns its text and its end; an empty one takes no room.
 pub(super) fn title(shapes: &mut Vec<Shape>, title: &str, left: f64, right: f64) -> (String, f64) {
     let lines = text::lines(title, TITLE_SIZE, Weight::Bold, right - left, MOST_LINES);
     let mut bottom = 12.0;
@@ -56,7 +56,7 @@ pub(super) fn title(shapes: &mut Vec<Shape>, title: &str, left: f64, right: f64)
     (lines.join(" "), bottom)
 }
 
-/// Adds smaller text below the title, in lines likewise, and gives where it ends; an empty one takes no room.
+/// Adds smaller text below the title, in lines likewise, and returns its end; an empty one takes no room.
 pub(super) fn subtitle(shapes: &mut Vec<Shape>, subtitle: &str, left: f64, right: f64, top: f64) -> f64 {
     let mut bottom = top;
     for line in text::lines(subtitle, SUBTITLE_SIZE, Weight::Regular, right - left, MOST_LINES) {
@@ -67,7 +67,7 @@ pub(super) fn subtitle(shapes: &mut Vec<Shape>, subtitle: &str, left: f64, right
     bottom
 }
 
-/// Adds the legend, in as many rows as it needs, and gives where it ends.
+/// Adds the legend, in as many rows as it needs, and returns its end.
 pub(super) fn legend(
     shapes: &mut Vec<Shape>,
     entries: impl IntoIterator<Item = Entry>,

@@ -1,4 +1,4 @@
-//! Where labels go: beside what they name, clear of everything else.
+//! Placement of labels: next to their objects, clear of everything else.
 
 use super::drawing::Shape;
 use super::geometry::{Colour, Position, Rectangle};
@@ -105,7 +105,7 @@ fn overlap(a: &Rectangle, b: &Rectangle) -> bool {
     a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom
 }
 
-/// Whether a straight line passes through a rectangle, after Liang and Barsky.
+/// True if a straight line passes through a rectangle, after Liang and Barsky.
 fn crosses([from, to]: &[Position; 2], rectangle: &Rectangle) -> bool {
     let (mut enters, mut leaves) = (0.0f64, 1.0f64);
     let sides = [

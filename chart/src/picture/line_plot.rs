@@ -28,7 +28,7 @@ const MOST_MARKERS: usize = 200;
 
 /// Lines over one axis, each value vertical over its place across; or, downwards, each value across at its depth.
 ///
-/// A point that is not finite breaks its line. Where a line has more points than the page has room for, the extremes
+/// A point that is not finite breaks its line. If a line has more points than the page has room for, the extremes
 /// of each column of the page stay, no gap that is thinner than a column does, and markers are left out. Without [`VerticalAxis::Depth`] the order of points is that of the axis across.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinePlot {
@@ -80,14 +80,14 @@ pub struct Line {
     pub name: String,
     /// Its points, across and vertical, joined in this order.
     pub points: Vec<[f64; 2]>,
-    /// Whether the points have markers.
+    /// True if the points have markers.
     pub is_marked: bool,
 }
 
 /// A place that is named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// Where, across and vertical.
+    /// Position, across and vertical.
     pub at: [f64; 2],
     /// Text written there.
     pub text: String,
@@ -360,7 +360,7 @@ mod tests {
             let size = LinePlot { lines, ..LinePlot::default() }.svg().len();
             assert!(size < 1_000_000, "{which}: {size} bytes");
         }
-        // What is wide enough to be seen stays a gap.
+        // A gap that is wide enough to be seen stays.
         let gap = (0..100_000).map(|k| [f64::from(k), if k / 1000 == 50 { f64::NAN } else { value(k) }]);
         assert_eq!(polylines(&LinePlot { lines: vec![line("", gap)], ..LinePlot::default() }.svg()).len(), 2);
     }

@@ -1,4 +1,4 @@
-//! How series are distinguished: by colour and by the shape of their markers.
+//! Distinction of series, by colour and by the shape of their markers.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 

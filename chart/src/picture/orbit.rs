@@ -17,18 +17,18 @@ const PLOT_SIDE: f64 = 540.0;
 const LEFT_MARGIN: f64 = 88.0;
 /// Straight lines that make up the circle of the wall.
 const CIRCLE_SIDES: usize = 180;
-/// How much wider than what it shows the view is.
+/// Width of the view relative to its contents.
 const MARGIN: f64 = 1.08;
-/// Side of the inset that shows the whole hole beside a view of the motion alone.
+/// Side of the inset that shows the whole hole next to a view of the motion alone.
 const INSET_SIDE: f64 = 120.0;
 /// Distance of the inset from the corner of the plot.
 const INSET_GAP: f64 = 10.0;
-/// A motion below this part of the hole is shown by itself unless the whole hole is asked for.
+/// A motion below this part of the hole is shown by itself unless the whole hole is requested.
 const SMALL_MOTION: f64 = 0.1;
 /// A motion below this part of the hole is rest: histories have seven digits, and their last one would fill the picture.
 const LEAST_MOTION: f64 = 1e-5;
 
-/// The path of one node across its hole, looking down the hole, with the low side down where there is one.
+/// The path of one node across its hole, looking down the hole, with the low side down if there is one.
 ///
 /// Both axes have one scale. A forward orbit turns clockwise, as the string does.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,11 +41,11 @@ pub struct OrbitPlot {
     pub path: Vec<[f64; 2]>,
     /// The radius at which the string touches the wall, in the same unit.
     pub wall: Option<f64>,
-    /// Where the low side lies: the angle from u towards v \[rad\]. Without one, u points down.
+    /// Angle of the low side, from u towards v \[rad\]. Without one, u points down.
     pub low_side: Option<f64>,
     /// The unit of the picture, such as `mm`.
     pub unit: String,
-    /// Whether the motion alone fills the picture, with the whole hole as an inset; none where that is so if it is below a tenth of
+    /// True if the motion alone fills the picture, with the whole hole as an inset; none fills it with a motion below a tenth of
     /// the hole.
     pub zoom: Option<bool>,
 }
@@ -136,7 +136,7 @@ impl OrbitPlot {
     }
 
     /// A displacement as it is seen: across to the right and vertical. The axes u, v and the hole's direction are
-    /// right-handed, so that to one who looks down the hole v is clockwise of u.
+    /// right-handed, so that seen down the hole v is clockwise of u.
     fn seen(&self, u: f64, v: f64) -> Option<Position> {
         let (sin, cos) = self.low_side.unwrap_or(0.0).sin_cos();
         let (along_low_side, clockwise) = (u * cos + v * sin, v * cos - u * sin);
@@ -351,7 +351,7 @@ mod tests {
         assert!((width(&zoomed) - PLOT_SIDE / MARGIN).abs() < 1.0, "{}", width(&zoomed));
         assert!(zoomed.contains(r#"class="inset""#) && zoomed.contains("whole hole"));
         assert!(Document::parse(&zoomed).is_ok() && plot.png(300).is_ok());
-        // The ticks tell where it is: from 29 to 31 below the axis, from 4 to 6 to the left.
+        // The ticks show its position: from 29 to 31 below the axis, from 4 to 6 to the left.
         assert!(zoomed.contains(">−30") && zoomed.contains(">−5"), "{zoomed}");
 
         let whole = OrbitPlot { zoom: Some(false), ..plot.clone() }.svg();

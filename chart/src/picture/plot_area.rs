@@ -11,17 +11,17 @@ pub(super) const TICK_SIZE: f64 = 12.0;
 const NAME_SIZE: f64 = 13.0;
 /// Between the frame and the text at ticks.
 const TICK_GAP: f64 = 7.0;
-/// How far the lower edge of the page is from the frame.
+/// Distance of the lower edge of the page from the frame.
 pub(super) const BELOW: f64 = 56.0;
 
-/// How far the left edge of the page is from the frame, for the vertical axis's ticks.
+/// Distance of the left edge of the page from the frame, for the vertical axis's ticks.
 pub(super) fn left_margin(ticks: &[Tick]) -> f64 {
     let labels = ticks.iter().filter_map(|tick| tick.label.as_deref());
     let widest = labels.map(|label| text::room(label, TICK_SIZE, Weight::Regular)).fold(24.0, f64::max);
     (widest + TICK_GAP + 38.0).ceil()
 }
 
-/// Where a place lies that is this far along the horizontal axis (from the left) and the vertical one (from
+/// Position of a place this far along the horizontal axis (from the left) and the vertical one (from
 /// below).
 pub(super) fn position(area: &Rectangle, x: f64, y: f64) -> Position {
     [area.left + x * area.width(), area.bottom - y * area.height()]

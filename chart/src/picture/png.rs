@@ -14,13 +14,13 @@ use super::text::{RAISED_RISE, RAISED_SIZE, plain_of_superscript};
 /// The most pixels in an image: 256 MiB of memory while it is made.
 const MAX_PIXELS: f64 = 67_108_864.0;
 
-/// Why a picture was not made.
+/// Errors of drawing a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The image would have no pixels, or more than 64 Mi.
     #[error("an image of {width} x {height} pixels cannot be made")]
     Size {
-        /// The width asked for, in pixels.
+        /// The requested width, in pixels.
         width: u32,
         /// The height that follows from the picture's proportions, in pixels.
         height: u32,
@@ -33,7 +33,7 @@ pub enum PictureError {
     Encoding(#[source] Box<dyn Error + Send + Sync>),
 }
 
-/// The built-in font and no other: nothing depends on what the machine has installed.
+/// The built-in font and no other: nothing depends on the fonts of the machine.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut fonts = Database::new();
     for font in [notosans::REGULAR_TTF, notosans::BOLD_TTF] {
@@ -100,7 +100,7 @@ mod tests {
     const SCALE: u32 = 8;
     const PAGE: f64 = 200.0;
 
-    /// How dark each pixel is of texts at (content, start, baseline, size), magnified.
+    /// Darkness of each pixel of texts at (content, start, baseline, size), magnified.
     fn ink(texts: &[(&str, f64, f64, f64)]) -> Pixmap {
         let text = |&(content, x, y, size): &(&str, f64, f64, f64)| {
             Shape::Text(Text::new(content, [x, y], Anchor::Start, size, Colour(0, 0, 0)))
@@ -135,7 +135,7 @@ mod tests {
             let last = columns.filter(|(pixel, _)| pixel.red() < 128).map(|(_, column)| column).max();
             let end = f64::from(last.expect("ink")) / f64::from(SCALE) - 10.0;
             let expected = width(text, 12.0, Weight::Regular);
-            // Less the room beside the last sign, and kerning.
+            // Less the room next to the last sign, and kerning.
             assert!((expected - 2.0..=expected).contains(&end), "{text}: {end} for {expected}");
         }
     }

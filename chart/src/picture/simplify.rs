@@ -1,4 +1,4 @@
-//! Polylines with as few points as show: what is left out lies within a part of a pixel of what is drawn.
+//! Polylines with as few points as show: omitted points lie within a part of a pixel of the drawn line.
 
 use std::f64::consts::{PI, TAU};
 

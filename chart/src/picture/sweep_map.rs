@@ -45,7 +45,7 @@ const VIRIDIS: [[f64; 3]; 9] = [
 
 /// One value a point of a sweep, by colour, over two parameters.
 ///
-/// Where the points fill a grid, cells stand for its values, of equal size or to scale; else each point is a mark at its place. A
+/// If the points fill a grid, cells stand for its values, of equal size or to scale; else each point is a mark at its place. A
 /// point without a value is crossed out; one that stands out has a diamond. More than 2000 points are a mosaic: cells without
 /// text, one colour in 128 each, no thinner than a unit of the page, or squares at the points' places, of which the last one shows.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -62,13 +62,13 @@ pub struct SweepMap {
     pub value_label: String,
     /// The points.
     pub points: Vec<MapPoint>,
-    /// Words that the values are the indices of, in the order of the legend, at most 8; none where values are numbers.
+    /// Words that the values are the indices of, in the order of the legend, at most 8; none if values are numbers.
     pub words: Vec<String>,
-    /// How the values of a parameter are placed on a grid.
+    /// Spacing of the values of a parameter on a grid.
     pub spacing: Spacing,
 }
 
-/// How the values of a parameter are placed on its axis.
+/// Spacing of the values of a parameter on its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spacing {
     /// At equal distances, whatever the values.
@@ -85,9 +85,9 @@ pub struct MapPoint {
     pub x: f64,
     /// The parameter vertical.
     pub y: f64,
-    /// The value; not finite where there is none.
+    /// The value; not finite if there is none.
     pub value: f64,
-    /// Whether the point stands out among the others: it gets a diamond.
+    /// True if the point stands out among the others: it gets a diamond.
     pub is_marked: bool,
     /// Marks a value that cannot be trusted: it gets a cross.
     pub is_doubtful: bool,
@@ -154,7 +154,7 @@ impl SweepMap {
         }
     }
 
-    /// The words by their colours, and on a mosaic what has no value.
+    /// The words by their colours, and on a mosaic cells without a value.
     fn legend(&self, points: &[&MapPoint]) -> Vec<Entry> {
         let label = &self.value_label;
         let word =
@@ -228,7 +228,7 @@ impl Colours<'_> {
     }
 }
 
-/// Where points lie.
+/// Positions of points.
 enum Places {
     /// Cells of a grid.
     Grid(Cells, Cells),
@@ -240,7 +240,7 @@ enum Places {
 struct Cells {
     /// The values, in order.
     values: Vec<f64>,
-    /// Where each value stands along the axis, from 0 to 1.
+    /// Position of each value along the axis, from 0 to 1.
     middles: Vec<f64>,
     /// The ends of the cells along the axis, one more than there are values.
     edges: Vec<f64>,
@@ -282,7 +282,7 @@ impl Cells {
         (self.edges.partition_point(|edge| *edge <= fraction).max(1) - 1).min(self.values.len() - 1)
     }
 
-    /// Whether all cells are of one size.
+    /// True if all cells are of one size.
     fn is_even(&self) -> bool {
         let even = 1.0 / self.values.len() as f64;
         self.edges.windows(2).all(|pair| (pair[1] - pair[0] - even).abs() < 1e-6 * even)
@@ -459,7 +459,7 @@ fn draw_cell(shapes: &mut Vec<Shape>, cell: &Rectangle, value: f64, scale: &Colo
 /// Grounds below this lightness have white text.
 const DARK: f64 = 135.0;
 
-/// How light a colour is, from 0 to 255, by the weights of ITU-R BT.709.
+/// Lightness of a colour, from 0 to 255, by the weights of ITU-R BT.709.
 fn lightness(Colour(red, green, blue): Colour) -> f64 {
     0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue)
 }

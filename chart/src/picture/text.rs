@@ -1,4 +1,4 @@
-//! Text in pictures: what is set, how wide it is, and how long text is cut.
+//! Text in pictures: setting, widths, and cutting of long text.
 
 use std::sync::LazyLock;
 
@@ -13,13 +13,13 @@ use super::geometry::{Colour, Position};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Text {
     pub(super) content: String,
-    /// Where the baseline begins, has its middle, or ends, according to the anchor.
+    /// Beginning, middle or end of the baseline, according to the anchor.
     pub(super) at: Position,
     pub(super) anchor: Anchor,
     pub(super) size: f64,
     pub(super) weight: Weight,
     pub(super) colour: Colour,
-    /// Whether the text runs upwards rather than to the right.
+    /// True if the text runs upwards rather than to the right.
     pub(super) upwards: bool,
 }
 
@@ -87,7 +87,7 @@ impl Text {
     }
 }
 
-/// How much wider text may be in the font of an SVG viewer that has not got ours.
+/// Largest width of text in another font of an SVG viewer, relative to ours.
 const VIEWERS_FONT: f64 = 1.12;
 
 /// The width to keep for a line of text, in page units.
@@ -100,7 +100,7 @@ pub(super) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     ends(text, size, weight).last().unwrap_or(0.0)
 }
 
-/// Where each character of a line ends, from its start, in page units.
+/// Ends of the characters of a line, from its start, in page units.
 fn ends(text: &str, size: f64, weight: Weight) -> impl Iterator<Item = f64> {
     let metrics = weight.metrics();
     text.chars().scan(0.0, move |end, character| {
@@ -129,7 +129,7 @@ pub(super) fn line(text: &str, size: f64, weight: Weight, max_width: f64) -> Str
     cut(&words(text).join(" "), size, weight, max_width)
 }
 
-/// The same in at most so many lines, which break between words; none of a text without words.
+/// The same in at most this many lines, which break between words; none of a text without words.
 pub(super) fn lines(text: &str, size: f64, weight: Weight, max_width: f64, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words(text) {

@@ -1,4 +1,4 @@
-//! Work-precision diagrams: what accuracy costs, by method.
+//! Work-precision diagrams: cost of accuracy, by method.
 
 use super::axis::PlotAxis;
 use super::drawing::{Drawing, Shape};
@@ -16,7 +16,7 @@ const RIGHT_MARGIN: f64 = 24.0;
 const LABEL_SIZE: f64 = 11.0;
 /// The widest a point's label becomes before it is cut.
 const LABEL_WIDTH: f64 = 140.0;
-/// How many labels of points are tried: far more than there is room for.
+/// Number of labels of points that are tried: far more than there is room for.
 const MAX_LABELS: usize = 400;
 
 /// A work-precision diagram: error against cost, both on logarithmic axes, one line for each method. Lower is
@@ -83,7 +83,7 @@ impl WorkPrecisionChart {
     }
 
     /// The chart laid out on a page 800 units wide. The legend is above the plot and makes the page higher
-    /// where it needs more lines.
+    /// if it needs more lines.
     pub fn drawing(&self) -> Drawing {
         let axes = self.axes();
         let (x_ticks, y_ticks) = axes.map(|(x, y)| (x.ticks(), y.ticks())).unwrap_or_default();
@@ -183,7 +183,7 @@ fn wanted_line(room: &mut LabelRoom, area: &Rectangle, height: f64, label: &str)
     Shape::Group("wanted", shapes)
 }
 
-/// The label of a point, if there is room. It is anchored at the point's side, to stay beside it in any font.
+/// The label of a point, if there is room. It is anchored at the point's side, to stay next to it in any font.
 fn point_label(room: &mut LabelRoom, at: Position, label: &str) -> Option<[Shape; 2]> {
     let label = text::line(label, LABEL_SIZE, Weight::Regular, LABEL_WIDTH);
     let width = text::room(&label, LABEL_SIZE, Weight::Regular);

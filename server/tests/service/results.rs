@@ -142,7 +142,7 @@ async fn a_spectrum_finds_the_lines_of_a_known_orbit() {
     assert_eq!(spectrum["attributes"]["resolved_hz"], 200.0);
     assert!(peaks.iter().all(|peak| peak["is_resolved"] == true), "{peaks:?}");
     let wide = format!("{path}/points/1/spectrum?node=49&from=2&to=8&range_hz=400&peaks=1&format=svg");
-    let shaded = "beyond what the step resolves (±200 Hz)";
+    let shaded = "not resolved by the step (±200 Hz)";
     assert!(bench.get(&wide).await.text().contains(shaded));
     assert!(!bench.get(&wide.replace("400", "100")).await.text().contains(shaded));
 

@@ -6,7 +6,7 @@ use crate::engine::sql;
 use crate::error::Result;
 use crate::store::Store;
 
-/// How long a session is valid \[ms\]: 30 days, and no longer than its token.
+/// Validity of a session \[ms\]: 30 days, and no longer than its token.
 const SESSION_MS: i64 = 30 * 24 * 3_600_000;
 
 /// A session that is valid now.
@@ -14,7 +14,7 @@ const SESSION_MS: i64 = 30 * 24 * 3_600_000;
 pub struct SessionRecord {
     /// The token that it was opened by.
     pub token: TokenRecord,
-    /// When it ceases to be valid \[ms since the epoch\].
+    /// End of its validity \[ms since the epoch\].
     pub expires: i64,
 }
 
@@ -22,7 +22,7 @@ impl Store {
     /// Opens a session by a token. Gives the text that the browser is to keep; the store keeps its hash.
     ///
     /// # Errors
-    /// When the database fails, or the system has no random numbers.
+    /// The database fails, or the system has no random numbers.
     pub async fn open_session(&self, token: &TokenRecord) -> Result<TokenSecret> {
         let secret = TokenSecret::generate()?;
         query(sql::session::OPEN)
@@ -37,7 +37,7 @@ impl Store {
     /// The session of a text; none if it or its token is not valid.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn session(&self, secret: &TokenSecret) -> Result<Option<SessionRecord>> {
         query(sql::session::TOKEN)
             .bind(secret.hash().as_bytes().as_slice())
@@ -50,7 +50,7 @@ impl Store {
     /// Closes a session, if there is one of this text.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn close_session(&self, secret: &TokenSecret) -> Result<()> {
         query(sql::session::CLOSE).bind(secret.hash().as_bytes().as_slice()).execute(&self.database).await?;
         Ok(())

@@ -1,11 +1,11 @@
-//! Tokens: who may talk to the service, and for what.
+//! Tokens: access to the service, with scopes.
 
 use crate::engine::query::{Row, query};
 use crate::engine::sql;
 use crate::error::{Result, StoreError};
 use crate::store::Store;
 
-/// How stale `last_used` may be \[ms\]: it is for people, and not worth a write a request.
+/// Largest delay of `last_used` \[ms\]: it is for people, and not worth a write a request.
 const LAST_USED_STEP_MS: i64 = 3_600_000;
 
 /// Characters of a token's text.
@@ -37,7 +37,7 @@ pub struct NewToken<'a> {
     pub name: Option<&'a str>,
     /// Permissions.
     pub scope: TokenScope,
-    /// How long it is valid \[ms\]; none means without end.
+    /// Validity \[ms\]; `None` means without end.
     pub lifetime_ms: Option<i64>,
 }
 
@@ -52,17 +52,17 @@ pub struct TokenRecord {
     pub name: Option<String>,
     /// Permissions.
     pub scope: TokenScope,
-    /// When it was made \[ms since the epoch\].
+    /// Time of its creation \[ms since the epoch\].
     pub created: i64,
-    /// When it ceases to be valid \[ms since the epoch\].
+    /// End of its validity \[ms since the epoch\].
     pub expires: Option<i64>,
-    /// When it was revoked \[ms since the epoch\].
+    /// Time of its revocation \[ms since the epoch\].
     pub revoked: Option<i64>,
-    /// When it was last used, to within an hour \[ms since the epoch\].
+    /// Time of its last use, to within an hour \[ms since the epoch\].
     pub last_used: Option<i64>,
 }
 
-/// Whether there are tokens.
+/// Presence of tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokensPresent {
     /// There has never been one.
@@ -97,7 +97,7 @@ impl TokenSecret {
     /// A new one of 256 random bits: `dsw_` and 64 hexadecimal digits, so that scanners for leaked secrets know it.
     ///
     /// # Errors
-    /// When the system has no random numbers.
+    /// The system has no random numbers.
     pub fn generate() -> Result<Self> {
         let mut bytes = [0; 32];
         getrandom::fill(&mut bytes).map_err(|error| StoreError::Random(error.to_string()))?;
@@ -137,7 +137,7 @@ impl Store {
     /// Stores a token. One whose text is stored already stays as it is.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn create_token(&self, token: &NewToken<'_>) -> Result<()> {
         query(sql::token::CREATE)
             .bind(token.secret.id())
@@ -154,7 +154,7 @@ impl Store {
     /// All tokens, oldest first, those that are not valid any more too.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn tokens(&self) -> Result<Vec<TokenRecord>> {
         query(sql::token::LIST).records(&self.database, TokenRecord::read).await
     }
@@ -162,16 +162,16 @@ impl Store {
     /// Makes a token void, at once and for good. False if there is no such token.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn revoke_token(&self, id: &str) -> Result<bool> {
         let changed = query(sql::token::REVOKE).bind(id).execute(&self.database).await?;
         Ok(changed == 1)
     }
 
-    /// The token of a text, if it is valid now. Looking a hash up tells nothing about the text by its time.
+    /// The token of a text, if it is valid now. The time of looking a hash up reveals nothing about the text.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn valid_token(&self, secret: &TokenSecret) -> Result<Option<TokenRecord>> {
         query(sql::token::VALID)
             .bind(secret.hash().as_bytes().as_slice())
@@ -182,7 +182,7 @@ impl Store {
     /// Notes that a token was used, unless that was noted within the hour.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn touch_token(&self, token: &TokenRecord) -> Result<()> {
         let now = self.now_ms().await?;
         if token.last_used.is_some_and(|last| now - last < LAST_USED_STEP_MS) {
@@ -192,10 +192,10 @@ impl Store {
         Ok(())
     }
 
-    /// Whether there are tokens, and valid ones among them.
+    /// Presence of tokens, and of valid ones among them.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn tokens_present(&self) -> Result<TokensPresent> {
         let (number, valid): (i64, i64) = query(sql::token::PRESENT).one(&self.database).await?;
         Ok(match (number, valid) {

@@ -20,47 +20,47 @@ use crate::blob::metrics::ObjectMetrics;
 use crate::blob::object::StoredObject;
 use crate::error::{Result, StoreError};
 
-/// Bytes that are read at once of an object in a directory where it is read from its beginning to its end. The object store's own
+/// Bytes that are read at once of an object in a directory if it is read from its beginning to its end. The object store's own
 /// stream hands out 8 KiB at a time, each from another thread, which takes longer than hashing them.
 const DIRECTORY_STRETCH: u64 = 1 << 20;
 
-/// The same in a bucket, where each is a request.
+/// The same in a bucket, with a request for each.
 const S3_STRETCH: u64 = 8 << 20;
 
 /// A request that is never done: what bounds it is how long nothing comes.
 const NO_TIMEOUT: &str = "365days";
 
-/// How long a service is waited for.
+/// Timeouts and retries of requests to a service.
 struct RetryLimits {
-    /// How long a request is sent again that failed.
+    /// Time for which a failed request is retried.
     retry: Duration,
     /// Longest wait between two tries.
     pause: Duration,
-    /// How long nothing may come of an answer, counted from the beginning of the request.
+    /// Longest silence within an answer, counted from the beginning of the request.
     silence: &'static str,
 }
 
-/// Of those who read: somebody waits for the answer.
+/// Limits of readers: somebody waits for the answer.
 const SHORT: RetryLimits =
     RetryLimits { retry: Duration::from_secs(10), pause: Duration::from_secs(1), silence: "10s" };
 
-/// Of those who write what took minutes to compute: a service that is restarted meanwhile costs nothing.
+/// Limits of writers of results that took minutes to compute: a restart of the service meanwhile costs nothing.
 const LONG: RetryLimits =
     RetryLimits { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
 
-/// Of those who only want to know who answers.
+/// Limits of probes that only identify the service.
 const ONCE: RetryLimits = RetryLimits { retry: Duration::ZERO, pause: Duration::ZERO, silence: "5s" };
 
 /// Directory or bucket of the objects, with all that differs between them. The stores are the same one but for the limits of their retries.
 #[derive(Debug, Clone)]
 pub(super) struct Backend {
-    /// For what somebody waits for.
+    /// Client for requests that somebody waits for.
     pub(super) objects: Arc<dyn ObjectStore>,
-    /// For writing what was computed.
+    /// Client for writing results.
     pub(super) uploads: Arc<dyn ObjectStore>,
-    /// For one try; none of a directory.
+    /// Client for a single try; `None` for a directory.
     pub(super) once: Option<Arc<dyn ObjectStore>>,
-    /// Bytes that are read at once where an object is read from its beginning to its end.
+    /// Bytes that are read at once if an object is read from its beginning to its end.
     pub(super) stretch: u64,
     /// None of a bucket.
     directory: Option<PathBuf>,
@@ -68,7 +68,7 @@ pub(super) struct Backend {
 
 impl Backend {
     /// # Errors
-    /// When a directory cannot be made, or the settings of a service are wrong. Whether it answers is not tried.
+    /// A directory cannot be made, or the settings of a service are wrong. No request is sent to it.
     pub(super) fn open(location: &ObjectsLocation, metrics: &ObjectMetrics) -> Result<Self> {
         match location {
             ObjectsLocation::Directory(path) => Self::in_directory(path, metrics),
@@ -140,7 +140,7 @@ pub(super) fn delete_file(file: &Path) -> Result<()> {
     }
 }
 
-/// A bucket, with what the environment says of it.
+/// A bucket, with its settings from the environment.
 fn s3(bucket: &str, settings: &BTreeMap<String, String>, limits: &RetryLimits) -> Result<AmazonS3> {
     let retry = RetryConfig {
         backoff: BackoffConfig {

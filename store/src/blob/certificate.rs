@@ -1,4 +1,4 @@
-//! Requests to an object store whose certificate is not accepted: they are told at once instead of being sent again.
+//! Requests to an object store whose certificate is not accepted: they are reported at once instead of being sent again.
 
 use async_trait::async_trait;
 use object_store::ClientOptions;

@@ -24,7 +24,7 @@ impl NamedFile {
     /// Reads a file once, whatever its own position is; a large one is never in memory as a whole.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// It cannot be read.
     pub async fn read(file: &File) -> Result<Self> {
         let file = Arc::new(file.try_clone().map_err(StoreError::LocalFile)?);
         let mut hasher = blake3::Hasher::new();
@@ -51,7 +51,7 @@ impl NamedFile {
     }
 }
 
-/// Sends a file of so many bytes to an upload, part by part, and fails at its end if it is not what its name says.
+/// Sends a file of this many bytes to an upload, part by part, and fails at its end if its hash is not its name.
 pub(super) async fn send_file(
     upload: &mut dyn MultipartUpload,
     file: &Arc<File>,

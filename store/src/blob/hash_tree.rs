@@ -28,7 +28,7 @@ pub(crate) struct HashTree {
 }
 
 impl HashTree {
-    /// Whether bytes that begin at a group's beginning and end at a group's or the content's end are this content's.
+    /// True if bytes that begin at a group's beginning and end at a group's or the content's end are this content's.
     pub(crate) fn holds(&self, start: u64, bytes: &[u8]) -> bool {
         let first = usize::try_from(start / GROUP).unwrap_or(usize::MAX);
         let mut expected = self.groups.iter().skip(first);
@@ -38,7 +38,7 @@ impl HashTree {
         hashed.groups.iter().all(|value| expected.next() == Some(value))
     }
 
-    /// The range with its groups made whole, cut off at the content's end; none where it begins beyond that.
+    /// The range with its groups made whole, cut off at the content's end; none if it begins beyond that.
     pub(crate) fn whole_groups(&self, bytes: &Range<u64>) -> Option<Range<u64>> {
         if bytes.is_empty() || bytes.start >= self.length {
             return None;
@@ -52,7 +52,7 @@ impl HashTree {
 pub(crate) struct HashTreeBuilder {
     groups: Vec<ChainingValue>,
     group: blake3::Hasher,
-    /// Where the group at hand begins \[bytes\].
+    /// Beginning of the current group \[bytes\].
     start: u64,
 }
 
@@ -89,7 +89,7 @@ impl HashTreeBuilder {
         self.group = blake3::Hasher::new();
     }
 
-    /// The tree; none where the content does not have this name, or fits in one group.
+    /// The tree; none if the content does not have this name, or fits in one group.
     pub(crate) fn finish(mut self, name: BlobId) -> Option<HashTree> {
         self.finish_group();
         let (left, right) = halves(&self.groups)?;
@@ -115,7 +115,7 @@ fn halves(groups: &[ChainingValue]) -> Option<(&[ChainingValue], &[ChainingValue
     (groups.len() > 1).then(|| groups.split_at(groups.len().next_power_of_two() / 2))
 }
 
-/// The trees that were asked for last.
+/// The trees that were requested last.
 #[derive(Debug, Default)]
 pub(crate) struct HashTrees(Mutex<VecDeque<(BlobId, Arc<HashTree>)>>);
 

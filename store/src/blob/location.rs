@@ -1,4 +1,4 @@
-//! Where the object store is.
+//! Location of the object store.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,10 +10,10 @@ use object_store::path::Path as ObjectPath;
 /// Scheme of a location in S3.
 const S3: &str = "s3://";
 
-/// Where the object store is: `DIRECTORY` or `s3://BUCKET[/PREFIX]`. It is shown as it is written, and never with a secret.
+/// Location of the object store: `DIRECTORY` or `s3://BUCKET[/PREFIX]`. It is shown as it is written, and never with a secret.
 #[derive(Clone, PartialEq, Eq)]
 pub enum ObjectsLocation {
-    /// A directory, which is made where there is none.
+    /// A directory, which is made if there is none.
     Directory(PathBuf),
     /// A bucket of a service that speaks the S3 protocol. Credentials, region and endpoint are taken from the environment
     /// (`AWS_ACCESS_KEY_ID`, `AWS_SECRET_ACCESS_KEY`, `AWS_REGION`, `AWS_ENDPOINT_URL`, `AWS_ALLOW_HTTP`).
@@ -28,7 +28,7 @@ pub enum ObjectsLocation {
     },
 }
 
-/// Why a text is no location of an object store.
+/// Errors of reading the location of an object store.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LocationError {
     /// There is nothing.

@@ -48,7 +48,7 @@ impl ObjectMetrics {
         }
         registry.register_with_unit(
             "object_request_duration",
-            "Time of requests to the object store, retries included, to the first byte of what is read",
+            "Time of requests to the object store, retries included, to the first byte of the answer",
             Unit::Seconds,
             self.requests.clone(),
         );

@@ -9,7 +9,7 @@ use crate::blob_id::BlobId;
 /// The folder of scratch objects.
 pub(super) const SCRATCH: &str = "probe";
 
-/// An object as it lies in the store, or the part of one whose upload was not finished.
+/// An object in the store, or a part of one whose upload was not finished.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct StoredObject {
     /// Path of the blob, present or not.
@@ -27,7 +27,7 @@ impl StoredObject {
         (path_of(id) == self.path).then(|| name.to_owned())
     }
 
-    /// Whether its upload was not finished.
+    /// True if its upload was not finished.
     pub(crate) fn is_upload(&self) -> bool {
         self.unfinished.is_some()
     }

@@ -32,10 +32,10 @@ pub struct BlobStore {
 }
 
 impl BlobStore {
-    /// Opens what is at a location; a directory is made where there is none. Whether a bucket is there is not tried.
+    /// Opens the object store at a location; a missing directory is made. The presence of a bucket is not tested.
     ///
     /// # Errors
-    /// When a directory cannot be made, or what the environment says of the service is wrong or not enough.
+    /// A directory cannot be made, or settings of the service in the environment are wrong or missing.
     pub fn open(location: &ObjectsLocation) -> Result<Self> {
         Self::counted(location, &ObjectMetrics::default())
     }
@@ -45,11 +45,11 @@ impl BlobStore {
         Ok(Self { backend: Backend::open(location, metrics)?, trees: Arc::default() })
     }
 
-    /// Writes a blob, durably, unless it is there. What is there under its name is read, and replaced in one step where it
+    /// Writes a blob, durably, unless it is present. Contents under its name are read, and replaced in one step if it
     /// is not what the name says, or cannot be read.
     ///
     /// # Errors
-    /// When the object store fails.
+    /// The object store fails.
     pub async fn put(&self, bytes: Vec<u8>) -> Result<BlobId> {
         let id = BlobId::of(&bytes);
         self.put_as(id, PutPayload::from(bytes)).await?;
@@ -74,7 +74,7 @@ impl BlobStore {
     /// \[bytes\], too. The file's own position does not matter.
     ///
     /// # Errors
-    /// When the file cannot be read or the object store fails.
+    /// The file cannot be read or the object store fails.
     pub async fn put_file(&self, file: &File) -> Result<(BlobId, u64)> {
         let file = NamedFile::read(file).await?;
         self.put_named(&file).await?;
@@ -84,7 +84,7 @@ impl BlobStore {
     /// The same of a file whose name is known.
     ///
     /// # Errors
-    /// When the file cannot be read or has changed, or the object store fails.
+    /// The file cannot be read or has changed, or the object store fails.
     pub async fn put_named(&self, NamedFile { file, id, bytes }: &NamedFile) -> Result<()> {
         if *bytes < PART as u64 {
             let whole = read_part(file, 0).await?;
@@ -109,7 +109,7 @@ impl BlobStore {
         sent: Result<()>,
     ) -> Result<()> {
         if let Err(error) = sent {
-            // What cannot be taken back is left to the collector, or to the bucket's rule. A service that was waited for in vain
+            // Uploads that cannot be aborted are left to the collector, or to the bucket's rule. A service that was waited for in vain
             // is not waited for again.
             if !error.is_unavailable() {
                 let _ = upload.abort().await;
@@ -129,7 +129,7 @@ impl BlobStore {
     /// large one is never in memory as a whole. Gives its size \[bytes\]; none of one that was here.
     ///
     /// # Errors
-    /// [Damage](StoreError::is_damage) where the other store has lost it; else when either object store fails.
+    /// [Damage](StoreError::is_damage) if the other store has lost it; else when either object store fails.
     pub(crate) async fn copy_from(&self, other: &BlobStore, id: BlobId) -> Result<Option<u64>> {
         if !self.is_to_be_written(id).await? {
             return Ok(None);
@@ -145,7 +145,7 @@ impl BlobStore {
         Ok(Some(length))
     }
 
-    /// Sends a blob of so many bytes to an upload, part by part, and fails at its end if it is not what its name says.
+    /// Sends a blob of this many bytes to an upload, part by part, and fails at its end if its hash is not its name.
     async fn send(&self, id: BlobId, length: u64, upload: &mut dyn MultipartUpload) -> Result<()> {
         let (path, mut hasher) = (path_of(id), blake3::Hasher::new());
         while hasher.count() < length {
@@ -169,7 +169,7 @@ impl BlobStore {
         Ok(())
     }
 
-    /// Whether a blob is not there or not whole.
+    /// True if a blob is missing or damaged.
     async fn is_to_be_written(&self, id: BlobId) -> Result<bool> {
         match self.verify(id).await {
             Ok(_) => Ok(false),
@@ -202,7 +202,7 @@ impl BlobStore {
     /// Reads a whole blob. What a disk has damaged is not passed on.
     ///
     /// # Errors
-    /// When it is not there or is not what was written, or the object store fails.
+    /// The blob is missing or damaged, or the object store fails.
     pub async fn get(&self, id: BlobId) -> Result<Bytes> {
         let content = self.backend.objects.get(&path_of(id)).await?.bytes().await?;
         if BlobId::of(&content) != id {
@@ -234,7 +234,7 @@ impl BlobStore {
     /// first range of a blob takes a reading of the whole, any other one the groups of the hash tree that it touches.
     ///
     /// # Errors
-    /// When the blob is not there or is not what was written, the range begins beyond its end or is empty, or the object store
+    /// The blob is missing or damaged, the range begins beyond its end or is empty, or the object store
     /// fails.
     pub async fn get_range(&self, id: BlobId, bytes: Range<u64>) -> Result<Bytes> {
         let Some(tree) = self.hash_tree(id).await? else {
@@ -263,7 +263,7 @@ impl BlobStore {
         Ok(cut(&content, bytes.start - groups.start..bytes.end.min(groups.end) - groups.start))
     }
 
-    /// The hashes of a blob's groups; none where it is no larger than one.
+    /// The hashes of a blob's groups; none if it is no larger than one.
     async fn hash_tree(&self, id: BlobId) -> Result<Option<Arc<HashTree>>> {
         if let Some(tree) = self.trees.get(id) {
             return Ok(Some(tree));
@@ -279,7 +279,7 @@ impl BlobStore {
         Ok(Some(tree))
     }
 
-    /// Reads an object of so many bytes from its beginning to its end.
+    /// Reads an object of this many bytes from its beginning to its end.
     async fn read_through(&self, id: BlobId, length: u64, mut take: impl FnMut(&[u8])) -> Result<()> {
         let path = path_of(id);
         let mut start = 0;
@@ -296,7 +296,7 @@ impl BlobStore {
         let path = path_of(id);
         match self.backend.objects.head(&path).await {
             Ok(meta) => Ok(meta.size),
-            // The answer to this request has no body that would tell a missing object from a missing bucket.
+            // The answer to this request has no body that would distinguish a missing object from a missing bucket.
             Err(object_store::Error::NotFound { .. }) => Ok(self.backend.objects.get(&path).await?.meta.size),
             Err(error) => Err(error.into()),
         }
@@ -333,7 +333,7 @@ impl BlobStore {
     /// Asks a bucket's service once for an object that there is not.
     ///
     /// # Errors
-    /// When its certificate is not accepted. What else it says, and whether it answers, is no matter.
+    /// Its certificate is not accepted. Other errors, and a missing answer, do not count.
     pub(crate) async fn check_certificate(&self) -> Result<()> {
         let Some(once) = &self.backend.once else { return Ok(()) };
         match once.head(&ObjectPath::from(SCRATCH)).await.map_err(StoreError::from) {

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::store::Store;
 use crate::work::state::WorkState;
 
-/// How much there is of what.
+/// Counts of rows and bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Census {
     /// Work items that are not final, by state; `held` are those that only paused sweeps want.
@@ -17,9 +17,9 @@ pub struct Census {
     pub points: Vec<(&'static str, i64)>,
     /// Sweeps.
     pub sweeps: i64,
-    /// Workers heard of within the time asked for.
+    /// Workers heard of within the given time.
     pub workers: i64,
-    /// Since when the oldest work item that is ready has been waiting \[ms\].
+    /// Age of the oldest work item that is ready \[ms\].
     pub oldest_queued_ms: i64,
     /// Size of the database.
     pub database_bytes: i64,
@@ -36,7 +36,7 @@ impl Store {
     /// open work items, sweeps and artifacts, not with that of points.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn census(&self, silence: Duration) -> Result<Census> {
         self.apply_left_transitions().await;
         let depths = self.queue_depths().await?;

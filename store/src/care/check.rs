@@ -1,4 +1,4 @@
-//! Whether what the store holds is whole: the database's own checks, and every blob against its name.
+//! Verification of the store: the database's own checks, and every blob against its name.
 
 use futures::future::BoxFuture;
 
@@ -32,7 +32,7 @@ impl Store {
     /// [`repair`](Self::repair) queues anew.
     ///
     /// # Errors
-    /// When the database cannot be read. What can be read but is wrong is reported, not an error.
+    /// The database cannot be read. Contents that can be read but are wrong are reported, and are no error.
     pub fn check(&self) -> BoxFuture<'_, Result<CheckReport>> {
         // Boxed, so that it is compiled with this crate.
         Box::pin(self.read_and_compare())
@@ -62,7 +62,7 @@ impl Store {
             match self.verify_blob(&id).await {
                 Ok(size) if size == bytes.unsigned_abs() => {}
                 Ok(size) => report.problems.push(format!("blob {id}: {size} bytes instead of {bytes}")),
-                // Whether the others are whole cannot be told either.
+                // The others cannot be verified either.
                 Err(error) if error.is_unavailable() => return Err(error),
                 Err(error) => {
                     report.problems.push(error.to_string());

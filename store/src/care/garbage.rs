@@ -21,19 +21,19 @@ use crate::store::Store;
 /// Blobs that are looked up under one hold of the write lock.
 const BATCH: usize = 100;
 
-/// How long the note holds that blobs are being deleted \[ms\].
+/// Validity of the note that blobs are being deleted \[ms\].
 const REMOVAL_MS: i64 = 600_000;
 
-/// How long a collector that has made such a note may delete: one that was stopped for longer deletes no more.
+/// Time for which a collector that has made such a note may delete: one that was stopped for longer deletes no more.
 const REMOVAL_TIME: Duration = Duration::from_millis(REMOVAL_MS as u64 / 2);
 
-/// How long an idempotency key holds \[ms\].
+/// Validity of an idempotency key \[ms\].
 const IDEMPOTENCY_MS: i64 = 24 * 3_600_000;
 
-/// How long a silent worker stays in the register \[ms\].
+/// Time for which a silent worker stays in the register \[ms\].
 const WORKER_MS: i64 = 24 * 3_600_000;
 
-/// How long what is kept. Sweeps that are pinned keep everything; summaries and the tables of sweeps are kept as long
+/// Ages at which data expire. Sweeps that are pinned keep everything; summaries and the tables of sweeps are kept as long
 /// as their sweeps.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RetentionPolicy {
@@ -50,7 +50,7 @@ pub struct RetentionPolicy {
 /// Deletions that were made, or would be.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Garbage {
-    /// Sweeps whose time had come.
+    /// Expired sweeps.
     pub sweeps: u64,
     /// Results that belonged to no sweep any more.
     pub results: u64,
@@ -70,12 +70,12 @@ pub struct Garbage {
     pub unfinished_bytes: u64,
 }
 
-/// When garbage was collected last.
+/// Times of the last garbage collection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Collection {
-    /// When the last one began \[ms since the epoch\].
+    /// Start of the last one \[ms since the epoch\].
     pub started: i64,
-    /// When one ended last \[ms since the epoch\].
+    /// End of the last completed one \[ms since the epoch\].
     pub ended: Option<i64>,
     /// Deletions of that one, as [`Garbage::to_json`] writes them.
     pub deleted_json: Option<String>,
@@ -99,11 +99,11 @@ impl Garbage {
 }
 
 impl Store {
-    /// Deletes what need not be kept, and tells what it was; a dry run only tells. It is noted when that was done last. Each kind of
+    /// Deletes expired data and unreferenced blobs, and reports their numbers; a dry run only reports. The time of the last collection is noted. Each kind of
     /// row is deleted by itself, so that nobody has to wait for all of them.
     ///
     /// # Errors
-    /// When the database or the object store fails; what was deleted until then stays deleted.
+    /// The database or the object store fails; what was deleted until then stays deleted.
     pub fn collect_garbage<'a>(
         &'a self,
         policy: &'a RetentionPolicy,
@@ -124,10 +124,10 @@ impl Store {
         })
     }
 
-    /// The last collection; none where there was none yet.
+    /// The last collection; none if there was none yet.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn last_collection(&self) -> Result<Option<Collection>> {
         let last: Option<(i64, Option<i64>, Option<String>)> =
             query(sql::garbage::LAST_COLLECTION).first(&self.database).await?;
@@ -207,7 +207,7 @@ impl Store {
                 continue;
             }
             let begin = query(sql::garbage::BEGIN_REMOVAL).bind(&blob).bind(REMOVAL_MS);
-            // Where another collector deletes it, somebody may write it again as soon as that is done.
+            // If another collector deletes it, somebody may write it again as soon as that is done.
             if let Some(until) = begin.first_scalar::<i64>(&mut tx).await? {
                 unwanted.push((object, Some((blob, until))));
             }
@@ -219,7 +219,7 @@ impl Store {
             if failure.is_none() && began.elapsed() <= REMOVAL_TIME {
                 match self.blobs().delete(object).await {
                     Ok(()) => deleted.push(object.clone()),
-                    // The object store may yet do what it was asked for: the note stays until it runs out.
+                    // The object store may still execute the request: the note stays until it runs out.
                     Err(error) => {
                         failure = Some(error);
                         continue;
@@ -271,7 +271,7 @@ async fn delete_unused_scenarios(tx: &mut Transaction) -> Result<u64> {
     query(sql::garbage::DELETE_SCENARIOS).execute(&mut *tx).await
 }
 
-/// Marks the artifacts whose age has come. An artifact is as young as the youngest sweep that has it.
+/// Marks expired artifacts. An artifact is as young as the youngest sweep that has it.
 async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
     let names: Vec<String> = query(sql::garbage::ARTIFACT_NAMES).scalars(&mut *tx).await?;
     let mut expired = 0;
@@ -287,7 +287,7 @@ async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i
     Ok(expired)
 }
 
-/// Events, idempotency keys, workers and owners' turns that nobody will ask for; tells the number of events.
+/// Events, idempotency keys, workers and owners' turns that nobody will request; returns the number of events.
 async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
     let events = query(sql::garbage::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))

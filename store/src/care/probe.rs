@@ -1,4 +1,4 @@
-//! Whether the store can do what it is for, tried out.
+//! Probe of the queue and of the blobs.
 
 use bytes::Bytes;
 
@@ -12,10 +12,10 @@ const NO_PHYSICS: i64 = -1;
 
 impl Store {
     /// Queues a scratch work item, claims it by the statement that workers use, and takes both back; then writes,
-    /// reads and deletes a scratch blob. Nothing of it is left or can be seen by others.
+    /// reads and deletes a scratch blob. Nothing is left, or visible to others.
     ///
     /// # Errors
-    /// When the database or the object store cannot be written or do not give back what was written.
+    /// The database or the object store cannot be written or do not give back what was written.
     pub async fn probe(&self) -> Result<()> {
         let scratch = format!("probe {}", self.now_ms().await?);
         let key = blake3::hash(scratch.as_bytes());

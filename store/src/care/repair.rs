@@ -36,7 +36,7 @@ pub struct RepairReport {
     pub other_numbers: u64,
 }
 
-/// Whether work that was queued for the same loss before is queued again.
+/// Treatment of work that was queued for the same loss before.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Tries {
     Once,
@@ -49,7 +49,7 @@ impl Store {
     /// compute.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn queue_damaged(&self, key: &WorkKey, blob: BlobId, physics_version: i64) -> Result<Repair> {
         let mut tx = self.write().await?;
         let names_blob: bool = query(sql::repair::NAMES_BLOB)
@@ -72,7 +72,7 @@ impl Store {
     /// Queues all work anew that a check has found without a result, or with one that has lost a table.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn repair(&self, found: &CheckReport, physics_version: i64) -> Result<RepairReport> {
         let mut report = RepairReport::default();
         let mut tx = self.write().await?;

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::Result;
 
-/// How long a process waits for its database: as long as for its object store.
+/// Time for which a process waits for its database: as long as for its object store.
 const RETRY_FOR: Duration = Duration::from_secs(60);
 
 /// Retries with backoff for a minute, as long as the database is busy or does not answer. Once the store is open, servers report such

@@ -1,4 +1,4 @@
-//! Connections to a PostgreSQL server: a pool, and one beside it for who comes alone.
+//! Connections to a PostgreSQL server: a pool, and one in addition for single users.
 //!
 //! The pool asks the server of each connection that it is given back whether it is still there, and hands that out last of all. A worker, whose
 //! statements follow each other, would send twice as many messages as it has statements, and go through all of the pool's connections, in
@@ -14,14 +14,14 @@ use sqlx::postgres::{PgConnection, PgPool};
 use sqlx::{Connection as _, Postgres};
 use tokio::sync::{Mutex, OwnedMutexGuard};
 
-/// How long a connection is trusted after its last use; later it is asked first whether it is still there, which takes a message and its
+/// Time for which a connection is trusted after its last use; later it is tested first, which takes a message and its
 /// answer.
 pub(super) const TRUSTED_FOR: Duration = Duration::from_secs(1);
 
-/// How long a new connection may take, or the answer of an old one to whether it is still there.
+/// Timeout of a new connection, and of the test of an old one.
 pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// How long one connection is kept at hand at most, as long as the pool keeps its own: the server's memory of it grows with its use.
+/// Longest life of a kept connection, as long as the pool keeps its own: the server's memory of it grows with its use.
 const KEPT_FOR: Duration = Duration::from_mins(30);
 
 /// Connections to a server. Cheap to clone.
@@ -36,7 +36,7 @@ pub(crate) struct Connections {
 pub(crate) struct ConnectionNumbers {
     /// Connections that are open.
     pub(crate) open: u32,
-    /// Of them, those that nobody uses.
+    /// Number of idle ones among them.
     pub(crate) idle: u32,
 }
 
@@ -54,7 +54,7 @@ pub(crate) enum Lent {
     OfPool(Pooled),
 }
 
-/// A connection of the pool, which closes it where its last statement has not been answered.
+/// A connection of the pool, which closes it if its last statement has not been answered.
 pub(crate) struct Pooled {
     connection: PoolConnection<Postgres>,
     is_answered: bool,
@@ -66,7 +66,7 @@ impl Connections {
         Self { pool, at_hand: Arc::default() }
     }
 
-    /// The pool, for who keeps a connection.
+    /// The pool, for users that keep a connection.
     pub(crate) fn pool(&self) -> &PgPool {
         &self.pool
     }
@@ -74,7 +74,7 @@ impl Connections {
     /// A connection: the one at hand, unless somebody else has it.
     ///
     /// # Errors
-    /// When no connection can be made, or none becomes free in time.
+    /// No connection can be made, or none becomes free in time.
     pub(crate) async fn lend(&self) -> sqlx::Result<Lent> {
         let Ok(mut at_hand) = Arc::clone(&self.at_hand).try_lock_owned() else {
             return Ok(Lent::OfPool(Pooled { connection: self.pool.acquire().await?, is_answered: false }));
@@ -90,7 +90,7 @@ impl Connections {
         Ok(Lent::Own(Box::new(AtHand { connection, made: now, used: now }), at_hand))
     }
 
-    /// Connections of the pool and the one beside it.
+    /// Connections of the pool and the additional one.
     pub(crate) fn numbers(&self) -> ConnectionNumbers {
         let (open, idle) = (self.pool.size(), self.pool.num_idle() as u32);
         match self.at_hand.try_lock() {
@@ -105,7 +105,7 @@ impl Connections {
     /// Closes all connections; those in use once they are given back.
     pub(crate) async fn close(&self) {
         if let Some(own) = self.at_hand.lock().await.take() {
-            // Where it is not there any more it need not be closed.
+            // A broken connection need not be closed.
             let _ = own.connection.close().await;
         }
         self.pool.close().await;

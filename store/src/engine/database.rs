@@ -1,7 +1,7 @@
 //! The engine behind the store: a SQLite file, or a PostgreSQL server.
 //!
 //! SQLite has one writer at a time. PostgreSQL has many, of two kinds. What changes the state of one work item (a claim, a result, a
-//! failure) runs beside others of its kind, and what follows from it for others (the turn of its owner, the sweeps that have it) is noted
+//! failure) runs concurrently with others of its kind, and its consequences for others (the turn of its owner, the sweeps that have it) is noted
 //! with it and applied in batches (migrations/postgres/0001_schema.sql). All that changes several (submitting, cancelling, pausing,
 //! collecting garbage) runs alone, as everything does on SQLite: it holds the writers' advisory lock exclusively, which the former hold
 //! shared. Triggers take the shared lock and note the changes, so that no statement can forget them.
@@ -23,7 +23,7 @@ use crate::error::Result;
 /// Connections to an engine. Cheap to clone.
 #[derive(Debug, Clone)]
 pub(crate) enum Database {
-    /// A file, and whose turn it is to write.
+    /// A file, and the turn to write it.
     Sqlite(SqlitePool, Writers),
     /// A server.
     Postgres(Connections),
@@ -58,7 +58,7 @@ impl Database {
         })
     }
 
-    /// Connects to it to look at it: nothing of it is made or changed.
+    /// Connects to it read-only: nothing is made or changed.
     pub(crate) fn open_read_only(location: &DatabaseLocation) -> BoxFuture<'_, Result<Self>> {
         Box::pin(async move {
             Ok(match location {
@@ -100,7 +100,7 @@ impl Database {
         })
     }
 
-    /// A transaction beside which nothing changes the state of a work item, a point or a sweep.
+    /// A transaction during which no other one changes the state of a work item, a point or a sweep.
     pub(crate) fn write(&self) -> BoxFuture<'_, Result<Transaction>> {
         Box::pin(async move {
             match self {
@@ -112,7 +112,7 @@ impl Database {
         })
     }
 
-    /// A transaction that changes the state of one work item and what belongs to it, beside others that do so.
+    /// A transaction that changes the state of one work item and what belongs to it, concurrently with others that do so.
     pub(crate) fn write_one(&self) -> BoxFuture<'_, Result<Transaction>> {
         Box::pin(async move {
             match self {
@@ -124,7 +124,7 @@ impl Database {
         })
     }
 
-    /// Does what follows for others from changes of work items that are committed, where that is not done with the change. Who has made
+    /// Applies the consequences of committed changes of work items for others, if they are not applied with the change. A process that has made
     /// such a change by a statement of its own calls it after that.
     pub(crate) fn apply_transitions(&self) -> BoxFuture<'_, ()> {
         Box::pin(async move {
@@ -157,7 +157,7 @@ impl Database {
 }
 
 impl Query {
-    /// Runs a statement that changes the state of a work item where it gives rows, and gives these; what follows from that for others is done
+    /// Runs a statement that changes the state of a work item if it gives rows, and gives these; what follows from that for others is done
     /// after it.
     pub(crate) async fn rows_of_change<T: Record>(self, database: &Database) -> Result<Vec<T>> {
         let rows = self.rows(database).await?;
@@ -167,7 +167,7 @@ impl Query {
         Ok(rows)
     }
 
-    /// Runs a statement that changes the state of a work item, and what follows from that for others; tells how many rows it changed.
+    /// Runs a statement that changes the state of a work item, with the consequences for others; returns the number of changed rows.
     pub(crate) async fn execute_change(self, database: &Database) -> Result<u64> {
         let changed = self.execute(database).await?;
         if changed > 0 {
@@ -193,7 +193,7 @@ impl Transaction {
         })
     }
 
-    /// The same, without waiting for the disk where the engine does that by itself: a crash of the database may forget it. Once a later
+    /// The same, without waiting for the disk if the engine does that by itself: a crash of the database may forget it. Once a later
     /// transaction is durable, it is too.
     pub(crate) fn commit_for_now(self) -> BoxFuture<'static, Result<()>> {
         Box::pin(async move {

@@ -1,4 +1,4 @@
-//! Where the database is.
+//! Location of the database.
 
 use std::ffi::OsString;
 use std::fmt;

@@ -25,7 +25,7 @@ pub(crate) fn postgres() -> Migrator {
     migrator(POSTGRES)
 }
 
-/// Whether a PostgreSQL database has had all migrations and no others, so that nothing has to be written: a worker's role may not.
+/// True if a PostgreSQL database has had all migrations and no others, so that nothing has to be written: a worker's role may not.
 pub(crate) async fn is_current(pool: &PgPool) -> Result<bool> {
     let exists: bool =
         sqlx::query_scalar("SELECT to_regclass('_sqlx_migrations') IS NOT NULL").fetch_one(pool).await?;

@@ -1,4 +1,4 @@
-//! Notifications of changes, so that those who wait need not poll often.
+//! Notifications of changes, so that waiting processes need not poll often.
 //!
 //! PostgreSQL notifies its listeners when a transaction commits (`NOTIFY`, by the triggers of the schema). A notification may be lost with
 //! a connection, so that polling goes on behind it, less often. SQLite has no notifications: there polling is all.
@@ -16,10 +16,10 @@ use crate::engine::database::Database;
 const WORK: &str = "drillsweep_work";
 const SWEEPS: &str = "drillsweep_sweeps";
 
-/// How many times longer the polling interval is where there are notifications.
+/// Factor of the polling interval if there are notifications.
 const POLLING_SLOWDOWN: u32 = 5;
 
-/// The shortest wait where there are notifications: many at once count as one.
+/// The shortest wait if there are notifications: many at once count as one.
 const SHORTEST_WAIT: Duration = Duration::from_millis(20);
 
 /// The wait before listening is tried again after it failed.
@@ -30,8 +30,8 @@ const RETRY: Duration = Duration::from_secs(2);
 pub struct Changes(Option<watch::Receiver<()>>);
 
 impl Changes {
-    /// Waits for the next notification, or until it is time to poll: after `poll_interval` where there are no notifications, and after
-    /// five times as long where there are. Nothing need have changed when it returns.
+    /// Waits for the next notification, or until it is time to poll: after `poll_interval` if there are no notifications, and after
+    /// five times as long if there are. Nothing need have changed when it returns.
     pub async fn wait(&mut self, poll_interval: Duration) {
         match &mut self.0 {
             None => tokio::time::sleep(poll_interval).await,
@@ -53,7 +53,7 @@ impl Changes {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Listening(Arc<Mutex<Option<Listener>>>);
 
-/// A task that listens, and whom it notifies, by channel.
+/// A task that listens, and its receivers, by channel.
 #[derive(Debug)]
 struct Listener {
     work: watch::Sender<()>,

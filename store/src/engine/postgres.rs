@@ -14,7 +14,7 @@ use crate::engine::migration;
 use crate::engine::role::Role;
 use crate::error::{Result, not_connected};
 
-/// How long a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
+/// Time for which a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
 /// holds nobody up for longer.
 const LOCK_TIMEOUT: &str = "30s";
 
@@ -37,13 +37,13 @@ pub(crate) async fn open(
         ("lock_timeout", LOCK_TIMEOUT),
         ("idle_in_transaction_session_timeout", LOCK_TIMEOUT),
         ("default_transaction_isolation", "read committed"),
-        // No statement is worth compiling: where statistics are missing, the planner thinks that some are.
+        // No statement is worth compiling: if statistics are missing, the planner thinks that some are.
         ("jit", "off"),
-        // Migrations tell of what is there already.
+        // Migrations report existing objects as notices.
         ("client_min_messages", "warning"),
     ]);
     if let Role::Worker = role {
-        // What a crash of the database forgets is computed again.
+        // Results that a crash of the database loses are computed again.
         // Their statements look for a few rows by an index: planning one takes longer than running it.
         options = options.options([
             ("synchronous_commit", "off"),
@@ -51,7 +51,7 @@ pub(crate) async fn open(
             ("enable_seqscan", "off"),
         ]);
     }
-    // One of them listens for notifications, and one is kept at hand beside the pool.
+    // One of them listens for notifications, and one is kept in addition to the pool.
     let connections = match role {
         Role::Server => 16,
         Role::Worker => 3,
@@ -90,7 +90,7 @@ pub(crate) async fn open(
     Ok(Connections::new(pool))
 }
 
-/// Connects to a server to look at what it has: nothing of it is made or changed.
+/// Connects to a server read-only: nothing is made or changed.
 pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Connections> {
     let options = options.clone().application_name("drillsweep").options([
         ("default_transaction_read_only", "on"),
@@ -106,7 +106,7 @@ pub(crate) async fn open_read_only(options: &PgConnectOptions) -> Result<Connect
     Ok(Connections::new(pool))
 }
 
-/// A transaction. Where it ends neither by a commit nor by being rolled back, its connection is closed, by which the server undoes it.
+/// A transaction. If it ends neither by a commit nor by being rolled back, its connection is closed, by which the server undoes it.
 pub(crate) struct PostgresTransaction {
     connection: Lent,
 }
@@ -117,7 +117,7 @@ impl PostgresTransaction {
         Self::begin(connections, READ.to_owned()).await
     }
 
-    /// The same, and in that state nothing is pending. What is pending is applied before, where the schema knows of such, though the
+    /// The same, and in that state nothing is pending. What is pending is applied before, if the schema knows of such, though the
     /// connection may be one that changes nothing by default.
     pub(crate) async fn read_applied(connections: &Connections) -> Result<Self> {
         let mut begun = Self { connection: connections.lend().await? };
@@ -182,11 +182,11 @@ impl PostgresTransaction {
     }
 }
 
-/// Applies what is pending, until nothing is left or somebody else is at it. Where that fails, the changes from which it follows stand
+/// Applies what is pending, until nothing is left or somebody else is at it. If that fails, the changes from which it follows stand
 /// nevertheless, and the next one that comes applies it.
 pub(crate) async fn apply_transitions(connections: &Connections) {
     if let Err(error) = apply_all(connections).await {
-        tracing::warn!(%error, "what follows from changes of points is left to others");
+        tracing::warn!(%error, "the consequences of changes of points are left to others");
     }
 }
 

@@ -39,7 +39,7 @@ pub(crate) struct Query {
     parameters: Vec<Value>,
 }
 
-/// Where a query runs.
+/// Connection or transaction in which a query runs.
 pub(crate) enum Session<'c> {
     Sqlite(&'c mut SqliteConnection),
     /// On any connection, in a transaction of its own.
@@ -128,7 +128,7 @@ impl Query {
         self
     }
 
-    /// Runs it, and tells how many rows it changed.
+    /// Runs it, and returns the number of changed rows.
     pub(crate) async fn execute<'c>(self, session: impl Into<Session<'c>>) -> Result<u64> {
         execute(self, session.into()).await
     }
@@ -227,7 +227,7 @@ impl From<PgRow> for Row {
 
 /// Result of a statement without rows.
 trait Changed {
-    /// How many rows it changed.
+    /// Number of changed rows.
     fn rows(self) -> u64;
 }
 

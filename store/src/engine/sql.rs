@@ -60,7 +60,7 @@ const fn find(name: &str, among: &[Named]) -> &'static str {
     panic!("no statement has this name")
 }
 
-/// Whether a text has another one at a place.
+/// True if a text has another one at a position.
 const fn has_at(text: &[u8], at: usize, other: &[u8]) -> bool {
     let mut number = 0;
     while number < other.len() {
@@ -327,7 +327,7 @@ mod tests {
         }
     }
 
-    /// Whether a text names a parameter.
+    /// True if a text names a parameter.
     fn names(text: &str, number: usize) -> bool {
         let parameter = format!("${number}");
         text.match_indices(&parameter)

@@ -20,7 +20,7 @@ use crate::error::{Result, StoreError};
 /// Lock that only one writer of this process holds at a time.
 pub(crate) type Writers = Arc<Mutex<()>>;
 
-/// How long a writer waits for another one.
+/// Time for which a writer waits for another one.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Bytes to which the write-ahead log is cut back.
@@ -33,7 +33,7 @@ const SERVER_CACHE: &str = "-16384";
 /// The same for a worker, which handles a point at a time.
 const WORKER_CACHE: &str = "-8192";
 
-/// Opens the file, makes it where there is none, and brings its schema up to date. Any number of processes may do so at once.
+/// Opens the file, makes it if it is missing, and brings its schema up to date. Any number of processes may do so at once.
 pub(crate) async fn open(path: &Path, role: Role, clock_offset_ms: i64) -> Result<SqlitePool> {
     if let Some(directory) = path.parent().filter(|path| !path.as_os_str().is_empty()) {
         std::fs::create_dir_all(directory)
@@ -102,7 +102,7 @@ fn refuse_network_file_system(path: &Path) -> Result<()> {
     }
 }
 
-/// The network file system that Linux reports as this number in `statfs`; none where it is on a disk of this machine. From linux/magic.h
+/// The network file system that Linux reports as this number in `statfs`; none if it is on a disk of this machine. From linux/magic.h
 /// and the file systems' own sources.
 fn network_file_system(kind: u64) -> Option<&'static str> {
     Some(match kind & 0xffff_ffff {
@@ -120,7 +120,7 @@ fn network_file_system(kind: u64) -> Option<&'static str> {
     })
 }
 
-/// Opens the file to look at it: nothing of it is made or changed, so that a copy on a read-only medium can be looked at.
+/// Opens the file read-only: nothing is made or changed, so that a copy on a read-only medium can be read.
 pub(crate) async fn open_read_only(path: &Path) -> Result<SqlitePool> {
     let mut log = OsString::from(path);
     log.push("-wal");
@@ -147,13 +147,13 @@ pub(crate) async fn write(
     Ok((transaction, turn))
 }
 
-/// How long others may take to open a database before it is opened beside them; it takes them some milliseconds.
+/// Time for which others may open a database before it is opened concurrently; it takes them some milliseconds.
 const OPENING_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How often it is looked whether they have.
+/// Interval of checks for the end of their opening.
 const OPENING_POLL: Duration = Duration::from_millis(10);
 
-/// Waits for whoever else is opening the same database. Turning a new file to write-ahead logging fails at once with
+/// Waits for other processes that are opening the same database. Turning a new file to write-ahead logging fails at once with
 /// "database is locked" while another process does the same, whatever the busy timeout is, and sqlx's migrations take
 /// no lock on SQLite. The lock ends with the file's handle, and with the process; one that was stopped while it held the
 /// lock must not keep all others out, so these open without it in the end.

@@ -3,8 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often those who claim look whether a lease has run out or a retry is due, as long as there is other work, and those who read
-/// whether a process has died before it had done what follows from a change: looking costs as much as claiming or reading.
+/// Interval at which claims look for expired leases and due retries, as long as there is other work, and reads look for changes
+/// whose consequences a dead process has left undone: looking costs as much as claiming or reading.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_secs(1);
 
 /// Throttle of looks for something to do that nobody notified a process of: one a [`LOOK_EVERY`].
@@ -12,7 +12,7 @@ pub(crate) const LOOK_EVERY: Duration = Duration::from_secs(1);
 pub(crate) struct Throttle(Arc<Mutex<Option<Instant>>>);
 
 impl Throttle {
-    /// Whether it is time to look again, now.
+    /// True if a look is due now.
     pub(crate) fn is_due(&self) -> bool {
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let is_due = last.is_none_or(|last| last.elapsed() >= LOOK_EVERY);

@@ -13,7 +13,7 @@ impl Store {
     /// False if there is no such sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn cancel_sweep(&self, id: &str) -> Result<bool> {
         let mut tx = self.write().await?;
         let changed = query(sql::sweep::CANCEL).bind(id).execute(&mut tx).await?;
@@ -38,11 +38,11 @@ impl Store {
         Ok(is_whole)
     }
 
-    /// Brings to its end what processes that died have left: sweeps whose work is not all cancelled, and those that nobody sees and that
+    /// Brings to its end what processes that died have left: sweeps whose work is not all cancelled, and hidden ones that
     /// nobody has worked on for `silence_ms`, because not all of their points were stored, or deleted. Tells how many sweeps that were.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn finish_what_was_begun(&self, silence_ms: i64) -> Result<u64> {
         let hidden: Vec<String> =
             query(sql::sweep::LEFT_HIDDEN).bind(silence_ms).scalars(&self.database).await?;
@@ -83,7 +83,7 @@ impl Store {
     /// live sweep wants; points under way go on. False if there is no such sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn pause_sweep(&self, id: &str, paused: bool) -> Result<bool> {
         let mut tx = self.write().await?;
         let changed = query(sql::sweep::PAUSE).bind(id).bind(paused).execute(&mut tx).await?;
@@ -95,10 +95,10 @@ impl Store {
     }
 
     /// Changes what can be changed of a sweep. Work that is open takes the priority of the most urgent live sweep that has
-    /// it. Where a revision is expected, a sweep of another one stays as it is.
+    /// it. If a revision is expected, a sweep of another one stays as it is.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn change_sweep(
         &self,
         id: &str,
@@ -129,12 +129,12 @@ impl Store {
         Ok(ChangeOutcome::Changed)
     }
 
-    /// Deletes a sweep that is finished and not pinned, with its points and events, and tells what that is; a dry run only tells.
+    /// Deletes a sweep that is finished and not pinned, with its points and events, and reports their numbers; a dry run only reports.
     /// Its results stay as long as other sweeps have them, and the others go with the next
-    /// [collection](Self::collect_garbage). Where a revision is expected, a sweep of another one stays.
+    /// [collection](Self::collect_garbage). If a revision is expected, a sweep of another one stays.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn delete_sweep(
         &self,
         id: &str,
@@ -172,10 +172,10 @@ impl Store {
     }
 
     /// Queues the failed and cancelled points of a sweep, and the runs that verify them, again, behind what their owner has in the
-    /// queue; tells how many pieces of work that is, or none if there is no such sweep. A cancelled sweep is wanted again.
+    /// queue; returns the number of work items, or none if there is no such sweep. A cancelled sweep is wanted again.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn retry_sweep(&self, id: &str) -> Result<Option<u64>> {
         let mut tx = self.write().await?;
         let owner: Option<String> = query(sql::sweep::REVIVE).bind(id).first_scalar(&mut tx).await?;
@@ -238,10 +238,10 @@ pub struct SweepChanges {
     pub priority: Option<i64>,
     /// Its tags, as a JSON array.
     pub tags_json: Option<String>,
-    /// Whether it and all that belongs to it is kept whatever its age.
+    /// True to keep it and all that belongs to it, whatever its age.
     pub is_pinned: Option<bool>,
-    /// When it is deleted \[ms since the epoch\]: at the first collection after it, if all its points are final and it is
-    /// not pinned; or never.
+    /// Time of expiry \[ms since the epoch\]: the first collection after it deletes the sweep, if all its points are final and it is
+    /// not pinned; `None` means never.
     pub expires: Option<Option<i64>>,
 }
 

@@ -10,7 +10,7 @@ use crate::work::state::{WorkKey, WorkState, work_key};
 /// A change of a work item that a sweep has among its points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
-    /// The sweep's version after the change: it rises, with gaps where the sweep itself changed or ended.
+    /// The sweep's version after the change: it rises, with gaps if the sweep itself changed or ended.
     pub seq: i64,
     /// The new state.
     pub state: WorkState,
@@ -20,18 +20,18 @@ pub struct Event {
     pub ordinals: Vec<u32>,
     /// Numbers of the points that it verifies.
     pub verifies: Vec<u32>,
-    /// When it happened \[ms since the epoch\].
+    /// Time of the event \[ms since the epoch\].
     pub at: i64,
 }
 
-/// How far a sweep has come: what is read of all sweeps to see which have changed.
+/// Progress of a sweep, which is read of all sweeps to find those that have changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SweepMark {
     /// The sweep.
     pub id: String,
     /// Raised with every change of it.
     pub version: i64,
-    /// Whether one of its points, or of the runs that verify them, is not final.
+    /// True if one of its points, or of the runs that verify them, is not final.
     pub is_unfinished: bool,
 }
 
@@ -39,7 +39,7 @@ impl Store {
     /// Events of a sweep after the number `after`, oldest first.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn events(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<Event>> {
         type Row = (i64, String, Vec<u8>, i64, Option<String>, Option<String>);
         self.apply_left_transitions().await;
@@ -58,10 +58,10 @@ impl Store {
             .collect()
     }
 
-    /// How far every sweep has come.
+    /// Progress of every sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn sweep_marks(&self) -> Result<Vec<SweepMark>> {
         self.apply_left_transitions().await;
         let rows: Vec<(String, i64, bool)> = query(sql::event::MARKS).rows(&self.database).await?;
@@ -73,7 +73,7 @@ impl Store {
     /// or later, the oldest first. What people change of a finished sweep has no time, and does not count.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn sweeps_since(&self, since: i64) -> Result<Vec<String>> {
         self.apply_left_transitions().await;
         query(sql::event::SINCE).bind(since).scalars(&self.database).await
@@ -82,7 +82,7 @@ impl Store {
     /// Some sweeps without their requests, in any order; nothing of those that are not there.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn listed_sweeps(&self, ids: &[&str]) -> Result<Vec<SweepRecord>> {
         let ids = serde_json::json!(ids).to_string();
         query(sql::event::SWEEPS).bind(ids).records(&self.database, SweepRecord::read).await

@@ -15,13 +15,13 @@ pub struct FailureRecord {
     pub sweep_name: Option<String>,
     /// Owner of the sweep.
     pub owner: String,
-    /// When it failed \[ms since the epoch\].
+    /// Time of the failure \[ms since the epoch\].
     pub at: i64,
     /// The point, without scenario and result.
     pub point: PointRecord,
 }
 
-/// Which failures are listed; what is absent lets all through.
+/// Filter of failures; absent members let all through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FailureFilter<'a> {
     /// Owner of the sweeps.
@@ -30,7 +30,7 @@ pub struct FailureFilter<'a> {
     pub class: Option<&'a str>,
 }
 
-/// Where a page of failures ends: the next one goes on after it.
+/// End of a page of failures, after which the next one continues.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailurePlace {
     /// As in [`FailureRecord::at`].
@@ -60,10 +60,10 @@ impl FailureRecord {
 
 impl Store {
     /// Points that failed or were given up as dead, of all sweeps that are kept, the latest first; `limit` of them after
-    /// a place in the list. Runs that only verify a point are told of by [`verifications`](Store::verifications).
+    /// a place in the list. [`verifications`](Store::verifications) reports runs that only verify a point.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn failures(
         &self,
         filter: &FailureFilter<'_>,

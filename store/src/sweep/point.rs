@@ -20,17 +20,17 @@ pub struct PointRecord {
     pub work_key: WorkKey,
     /// The scenario; left out of lists.
     pub scenario: Option<ScenarioText>,
-    /// Where its work stands.
+    /// State of its work.
     pub state: WorkState,
     /// Simulated time over duration, 0 to 1.
     pub progress: f64,
-    /// How often a worker has started it.
+    /// Number of attempts.
     pub attempts: i64,
-    /// Why it failed, as JSON.
+    /// Reason of its failure, as JSON.
     pub error_json: Option<String>,
     /// Scalar results as a JSON object.
     pub summary_json: Option<String>,
-    /// Where and how it was computed, as a JSON object.
+    /// Provenance of its result, as a JSON object.
     pub provenance_json: Option<String>,
 }
 
@@ -41,11 +41,11 @@ pub struct TableRecord {
     pub ordinal: i64,
     /// The swept parameters as a JSON object.
     pub parameters_json: String,
-    /// Where its work stands.
+    /// State of its work.
     pub state: WorkState,
     /// Scalar results as a JSON object.
     pub summary_json: Option<String>,
-    /// Why it failed, as JSON.
+    /// Reason of its failure, as JSON.
     pub error_json: Option<String>,
 }
 
@@ -62,7 +62,7 @@ pub struct Artifact {
     pub bytes: i64,
     /// Rows of the table.
     pub row_count: i64,
-    /// When its blob was given up \[ms since the epoch\].
+    /// Time at which its blob was given up \[ms since the epoch\].
     pub expired: Option<i64>,
 }
 
@@ -70,7 +70,7 @@ impl Store {
     /// Points of a sweep after the ordinal `after`, in some states or in any, without their results.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn points(
         &self,
         sweep_id: &str,
@@ -92,7 +92,7 @@ impl Store {
     /// One point with its result, if it has one; none if there is no such point.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn point(&self, sweep_id: &str, ordinal: i64) -> Result<Option<PointRecord>> {
         query(sql::point::ONE)
             .bind(sweep_id)
@@ -104,7 +104,7 @@ impl Store {
     /// One row a point, for the sweep's table, in order: `limit` points at most, after the ordinal `after`.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn table_rows(&self, sweep_id: &str, after: i64, limit: i64) -> Result<Vec<TableRecord>> {
         type Row = (i64, String, String, Option<String>, Option<String>);
         let rows: Vec<Row> =
@@ -126,7 +126,7 @@ impl Store {
     /// have expired are among them.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn point_artifacts(
         &self,
         sweep_id: &str,
@@ -154,7 +154,7 @@ impl Store {
     /// Artifacts of a result, by name; none before it is there.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn artifacts(&self, key: &WorkKey) -> Result<Vec<Artifact>> {
         query(sql::point::ARTIFACTS).bind(key.as_slice()).records(&self.database, Artifact::read).await
     }

@@ -17,27 +17,27 @@ pub struct SweepRecord {
     pub name: Option<String>,
     /// Owner, whose share of the workers it counts against.
     pub owner: String,
-    /// The request as JSON; empty where sweeps are read [without](Store::listed_sweeps) it.
+    /// The request as JSON; empty if sweeps are read [without](Store::listed_sweeps) it.
     pub request_json: String,
     /// Higher goes first.
     pub priority: i64,
     /// Raised with every change of one of its points.
     pub version: i64,
-    /// Raised with every change that somebody asked for.
+    /// Raised with every requested change.
     pub revision: i64,
     /// True once it was cancelled.
     pub is_cancelled: bool,
     /// True while its points are not handed out.
     pub is_paused: bool,
-    /// True where it and all that belongs to it is kept whatever its age.
+    /// True if it and all that belongs to it is kept whatever its age.
     pub is_pinned: bool,
-    /// When it is to be deleted \[ms since the epoch\].
+    /// Time from which it may be deleted \[ms since the epoch\].
     pub expires: Option<i64>,
     /// Words to find it by, as a JSON array.
     pub tags_json: String,
-    /// When it was submitted \[ms since the epoch\].
+    /// Time of its submission \[ms since the epoch\].
     pub created: i64,
-    /// When its last point became final \[ms since the epoch\].
+    /// Time at which its last point became final \[ms since the epoch\].
     pub finished: Option<i64>,
     /// Points by state.
     pub counts: StateCounts,
@@ -47,10 +47,10 @@ pub struct SweepRecord {
     pub progress: f64,
 }
 
-/// Which sweeps are listed; what is absent lets all through.
+/// Filter of sweeps; absent members let all through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SweepFilter<'a> {
-    /// Of this owner.
+    /// Owner.
     pub owner: Option<&'a str>,
     /// In this state: `running`, `paused`, `completed` or `cancelled`.
     pub state: Option<&'a str>,
@@ -66,7 +66,7 @@ impl Store {
     /// A sweep with its counts; none if there is no such sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
         self.apply_left_transitions().await;
         query(sql::sweep::ONE).bind(id).first_record(&self.database, SweepRecord::read).await
@@ -75,7 +75,7 @@ impl Store {
     /// Sweeps, newest first, those that the filter lets through, before the sweep `before`.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn sweeps(
         &self,
         filter: &SweepFilter<'_>,
@@ -98,7 +98,7 @@ impl Store {
     /// Versions of the numbers of some sweeps, by sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn physics_versions(&self, sweeps: &[&str]) -> Result<HashMap<String, i64>> {
         let sweeps = serde_json::json!(sweeps).to_string();
         let versions: Vec<(String, i64)> =
@@ -109,7 +109,7 @@ impl Store {
     /// A number that rises with every change of the sweep's points; none if there is no such sweep.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn sweep_version(&self, id: &str) -> Result<Option<i64>> {
         self.apply_left_transitions().await;
         query(sql::sweep::VERSION).bind(id).first_scalar(&self.database).await

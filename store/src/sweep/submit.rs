@@ -90,7 +90,7 @@ pub enum CachePolicy {
     /// Their result is taken.
     #[default]
     Reuse,
-    /// They are recomputed, failed ones too. The old result stays until a new one takes its place; where sweeps of other owners have
+    /// They are recomputed, failed ones too. The old result stays until a new one takes its place; if sweeps of other owners have
     /// it, it stays theirs, and the new one is this sweep's.
     Refresh,
     /// Their result is taken, or that they failed; a sweep with other points is not stored.
@@ -102,7 +102,7 @@ pub enum CachePolicy {
 pub enum AppendOutcome {
     /// Number of points added; the sweep had the others already.
     Added(u64),
-    /// The sweep would have so many points, which is too many; nothing is changed.
+    /// The sweep would have this many points, which is too many; nothing is changed.
     TooMany(u64),
     /// The sweep is cancelled; nothing is changed.
     Cancelled,
@@ -153,10 +153,10 @@ impl Store {
     /// writing, and its first points may be computed before. Work that is known is not done again, unless the sweep asks
     /// for it: a finished point counts at once, a failed one stays failed, a cancelled one is queued again.
     ///
-    /// Where this is not awaited to its end, what is left is taken away by [`finish_what_was_begun`](Self::finish_what_was_begun).
+    /// If this is not awaited to its end, [`finish_what_was_begun`](Self::finish_what_was_begun) takes the remains away.
     ///
     /// # Errors
-    /// When the idempotency key was used for another request, or the database fails.
+    /// The idempotency key was used for another request, or the database fails.
     pub async fn submit_sweep(&self, sweep: &NewSweep) -> Result<SubmitOutcome> {
         if sweep.cache == CachePolicy::Only {
             let mut connection = self.database.read().await?;
@@ -181,7 +181,7 @@ impl Store {
         match self.store_points(tx, sweep, order, now).await {
             Ok(()) => Ok(SubmitOutcome::Created),
             Err(error) => {
-                // What is left of it nobody sees, and if this fails too it is taken away later.
+                // Its remains are hidden, and if this fails too they are taken away later.
                 if let Err(error) = self.take_away(&sweep.id).await {
                     tracing::warn!(%error, sweep = sweep.id, "half a sweep is left for later");
                 }
@@ -215,7 +215,7 @@ impl Store {
         let mut is_first = true;
         for (role, base_json, rows) in points.chain(runs) {
             if !is_first {
-                // What a crash forgets of a hidden sweep nobody was told of. Showing it makes all of it durable.
+                // A crash may lose parts of a hidden sweep, which no answer has reported. Showing it makes all of it durable.
                 tx.commit_for_now().await?;
                 tx = self.write().await?;
                 still_hidden(&mut tx, sql::submit::KEEP_HIDDEN, &sweep.id).await?;
@@ -244,21 +244,21 @@ impl Store {
         tx.commit().await
     }
 
-    /// Which of some points a sweep has not, by their ordinals: those that [`append_points`](Self::append_points) would add.
+    /// Ordinals of the points that a sweep lacks: those that [`append_points`](Self::append_points) would add.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn lacking_points(&self, sweep_id: &str, points: &[NewPoint]) -> Result<Vec<i64>> {
         let mut connection = self.database.read().await?;
         Ok(lacking(&mut connection, sweep_id, points).await?.iter().map(|point| point.ordinal).collect())
     }
 
     /// Adds points to a sweep, but for those that it has already; their ordinals are given here, going on from its last
-    /// point. The request is noted beside the sweep's own, unless the sweep has all of its points. A sweep has at most
+    /// point. The request is noted with the sweep's own, unless the sweep has all of its points. A sweep has at most
     /// `limit` points.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn append_points(
         &self,
         sweep_id: &str,
@@ -320,7 +320,7 @@ impl Store {
     /// The requests by which points were added to a sweep: the last `limit` of them, in their order.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn appended_requests(&self, sweep_id: &str, limit: i64) -> Result<Vec<String>> {
         let mut requests: Vec<String> =
             query(sql::submit::APPENDED).bind(sweep_id).bind(limit).scalars(&self.database).await?;
@@ -328,10 +328,10 @@ impl Store {
         Ok(requests)
     }
 
-    /// How many points have a result already, of their own or by fuller work: their keys with that of the latter.
+    /// Number of points that have a result already, of their own or by fuller work: their keys with that of the latter.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn known_results(&self, keys: &[(WorkKey, Option<WorkKey>)]) -> Result<u64> {
         let mut known = 0;
         for keys in keys.chunks(ROWS_AT_ONCE) {
@@ -455,7 +455,7 @@ async fn copy_results(tx: &mut Transaction, keys: &[(WorkKey, WorkKey)]) -> Resu
     Ok(())
 }
 
-/// Which of the keys belong to work that has a result with all its tables, and is not being recomputed.
+/// Keys of work that has a result with all its tables, and is not being recomputed.
 async fn fuller_results<'c>(session: impl Into<Session<'c>>, keys: &[WorkKey]) -> Result<HashSet<WorkKey>> {
     if keys.is_empty() {
         return Ok(HashSet::new());
@@ -464,7 +464,7 @@ async fn fuller_results<'c>(session: impl Into<Session<'c>>, keys: &[WorkKey]) -
     found.iter().map(|key| work_key(key)).collect()
 }
 
-/// Which of the points have neither a result nor failed, by ordinal.
+/// Ordinals of the points that have neither a result nor failed.
 async fn not_computed(tx: &mut Transaction, points: &[NewPoint]) -> Result<Vec<i64>> {
     let mut missing = Vec::new();
     for points in points.chunks(ROWS_AT_ONCE) {

@@ -1,4 +1,4 @@
-//! Points of a sweep beside the runs that verify them.
+//! Points of a sweep with the runs that verify them.
 
 use crate::engine::query::query;
 use crate::engine::sql;
@@ -17,9 +17,9 @@ pub struct VerificationRecord {
     pub summary_json: Option<String>,
     /// Content hash of the run.
     pub work_key: WorkKey,
-    /// Where the run stands.
+    /// State of the run.
     pub state: WorkState,
-    /// Why the run failed, as JSON.
+    /// Reason of the run's failure, as JSON.
     pub error_json: Option<String>,
     /// Scalar results of the run as a JSON object, once it has some.
     pub reference_json: Option<String>,
@@ -29,7 +29,7 @@ impl Store {
     /// The points of a sweep that are verified, in order.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn verifications(&self, sweep_id: &str) -> Result<Vec<VerificationRecord>> {
         type Row = (i64, String, Option<String>, Vec<u8>, String, Option<String>, Option<String>);
         let rows: Vec<Row> = query(sql::verification::LIST).bind(sweep_id).rows(&self.database).await?;

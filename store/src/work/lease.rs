@@ -27,7 +27,7 @@ pub enum Renewal {
 }
 
 impl Lease {
-    /// The statement that extends it: gives whether a cancellation is asked for; nothing if it is lost.
+    /// Statement that extends it: returns the cancel flag; no row if it is lost.
     pub(crate) fn renewing(&self, lease_ms: i64, progress: f64) -> Query {
         query(sql::lease::RENEW)
             .bind(self.key.as_slice())
@@ -39,7 +39,7 @@ impl Lease {
 }
 
 impl Renewal {
-    /// Outcome for a lease whose cancellation is requested or not; none means a lost lease.
+    /// Outcome from the cancel flag of a renewal; `None` means that the lease was lost.
     pub(crate) fn of(cancel_requested: Option<bool>) -> Self {
         match cancel_requested {
             None => Renewal::Lost,

@@ -1,4 +1,4 @@
-//! How fast the machines of the workers are.
+//! Speed of the workers' machines.
 
 use crate::engine::query::query;
 use crate::engine::sql;
@@ -9,7 +9,7 @@ impl Store {
     /// Keeps the speed of a machine for a version of the numbers, as JSON text, in place of an earlier one.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn keep_machine_speed(&self, host: &str, physics_version: i64, speed_json: &str) -> Result<()> {
         query(sql::machine::KEEP_SPEED)
             .bind(host)
@@ -24,7 +24,7 @@ impl Store {
     /// started.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn machine_speed(&self, physics_version: i64) -> Result<Option<String>> {
         query(sql::machine::LATEST_SPEED).bind(physics_version).first_scalar(&self.database).await
     }

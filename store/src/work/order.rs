@@ -12,7 +12,7 @@ pub(crate) const PLACE_OF_A_POINT: i64 = 1_000;
 /// and enough that the commits do not count.
 pub(crate) const POINTS_AT_ONCE: i64 = 500;
 
-/// The order in which an owner's open work was asked for.
+/// Order in which an owner's open work was requested.
 #[derive(Clone, Copy)]
 pub(crate) struct Order {
     /// The first place that is taken; that of the last without any.

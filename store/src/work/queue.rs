@@ -36,7 +36,7 @@ pub struct Claim {
     pub lease: Lease,
     /// The scenario.
     pub scenario: ScenarioText,
-    /// Where an earlier attempt was suspended.
+    /// Checkpoint of an earlier attempt.
     pub checkpoint: Option<BlobId>,
 }
 
@@ -71,7 +71,7 @@ pub struct QueueDepths {
 /// Outcome of a result whose worker wanted to go on with the next work item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
-    /// Whether the result is stored; not if the lease was lost.
+    /// True if the result is stored; false if the lease was lost.
     pub is_stored: bool,
     /// The next work item, if the result is stored and one was ready at once.
     pub next: Option<Claim>,
@@ -82,11 +82,11 @@ pub struct Finished {
 pub struct NewResult<'a> {
     /// Scalar results as a JSON object.
     pub summary_json: &'a str,
-    /// Where and how it was computed, as a JSON object.
+    /// Provenance of the result, as a JSON object.
     pub provenance_json: &'a str,
     /// Its artifacts.
     pub artifacts: &'a [NewArtifact],
-    /// Whether summary and artifacts are the same whenever the work is done; not so where they hold times that it took.
+    /// True if summary and artifacts are equal whenever the work is done; false if they hold computing times.
     pub is_repeatable: bool,
 }
 
@@ -119,7 +119,7 @@ impl Earlier {
                 differences.push(artifact.name.clone());
             }
         }
-        // What the new one has not.
+        // Blobs that the new one lacks.
         differences.extend(blobs.into_keys());
         differences
     }
@@ -127,10 +127,10 @@ impl Earlier {
 
 impl Store {
     /// Hands out the next work item of the worker's physics version; none if nothing is ready. Owners take turns; of the
-    /// owner whose turn it is the most urgent goes first, then the order asked for.
+    /// owner whose turn it is the most urgent goes first, then the order of requests.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn claim(&self, worker: &str, physics_version: i64, lease_ms: i64) -> Result<Option<Claim>> {
         let claim = || claiming(worker, physics_version, lease_ms).rows_of_change(&self.database);
         let has_looked = self.reap_now_and_then().await?;
@@ -155,18 +155,18 @@ impl Store {
     /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn renew(&self, lease: &Lease, lease_ms: i64, progress: f64) -> Result<Renewal> {
         Ok(Renewal::of(lease.renewing(lease_ms, progress).first_scalar(&self.database).await?))
     }
 
     /// Stores a result. False if the lease was lost: then nothing is written.
     ///
-    /// A result that was recomputed takes the place of the one before, with its artifacts. Where it should be the same and
-    /// is not, its provenance says so for good: `disagreement` tells what differs, and the provenance of the one before.
+    /// A result that was recomputed takes the place of the one before, with its artifacts. If it should be the same and
+    /// is not, its provenance says so for good: `disagreement` has what differs, and the provenance of the one before.
     ///
     /// # Errors
-    /// When the database fails, or a blob is not there.
+    /// The database fails, or a blob is not there.
     pub async fn finish_done(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
         let finish = with_result(query(sql::queue::FINISH_AT_ONCE), lease, result);
         match finish.rows_of_change::<(String,)>(&self.database).await?.into_iter().next() {
@@ -176,11 +176,11 @@ impl Store {
     }
 
     /// Stores a result, as [`finish_done`](Self::finish_done), and hands the same worker its next work item of a physics version, as
-    /// [`claim`](Self::claim): on PostgreSQL by one message and in one transaction. Where nothing is ready it does not look for leases that
+    /// [`claim`](Self::claim): on PostgreSQL by one message and in one transaction. If nothing is ready it does not look for leases that
     /// have run out: `claim` does.
     ///
     /// # Errors
-    /// When the database fails, or a blob is not there.
+    /// The database fails, or a blob is not there.
     pub async fn finish_and_claim(
         &self,
         lease: &Lease,
@@ -210,7 +210,7 @@ impl Store {
         Ok(Finished { is_stored, next: claimed(row.into_iter().collect(), &lease.worker)? })
     }
 
-    /// Stores a result where there is an earlier one, or where statements are no messages, step by step. False if the lease was lost.
+    /// Stores a result if there is an earlier one, or if statements are no messages, step by step. False if the lease was lost.
     async fn replace_result(&self, lease: &Lease, result: &NewResult<'_>) -> Result<bool> {
         let key = lease.key.as_slice();
         let mut tx = self.write_one().await?;
@@ -264,16 +264,16 @@ impl Store {
     /// Ends a work item without a result, for good. False if the lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn finish_failed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         self.leave(sql::queue::FAIL, lease, error_json).await
     }
 
-    /// Ends a work item that was cancelled. Where it has been asked for again since, it goes back to the queue instead. False if the
+    /// Ends a work item that was cancelled. If it has been requested again since, it goes back to the queue instead. False if the
     /// lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn finish_cancelled(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         self.leave(sql::queue::CANCEL, lease, error_json).await
     }
@@ -282,7 +282,7 @@ impl Store {
     /// lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn keep_checkpoint(&self, lease: &Lease, blob: BlobId) -> Result<bool> {
         let mut tx = self.write_one().await?;
         require_reserved(&mut tx, [blob]).await?;
@@ -297,11 +297,11 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Notes what is known of the worker of a lease, for those who look for the reason when it is heard of no more: what follows "the
+    /// Notes facts about the worker of a lease, for the reason of its point's failure if it is heard of no more: what follows "the
     /// last one", such as "was ended by signal 9". False if the lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn note_worker(&self, lease: &Lease, note: &str) -> Result<bool> {
         self.leave(sql::queue::NOTE_WORKER, lease, note).await
     }
@@ -310,7 +310,7 @@ impl Store {
     /// as a death of the worker, and after three the work is given up. False if the lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn crashed(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         let changed = query(sql::queue::CRASH)
             .bind(lease.key.as_slice())
@@ -323,11 +323,11 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Gives work back untried, as when a worker is told to stop. Work that nobody wants any more ends cancelled.
+    /// Gives work back untried, as when a worker has to stop. Work that nobody wants any more ends cancelled.
     /// False if the lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn release(&self, lease: &Lease) -> Result<bool> {
         let changed = query(sql::queue::RELEASE)
             .bind(lease.key.as_slice())
@@ -342,7 +342,7 @@ impl Store {
     /// False if the lease was lost.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn retry_later(&self, lease: &Lease, error_json: &str) -> Result<bool> {
         let changed = query(sql::queue::RETRY_LATER)
             .bind(lease.key.as_slice())
@@ -363,7 +363,7 @@ impl Store {
     /// brought forward. Leases get their whole length once more, in which a living worker renews them.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn reap_expired(&self) -> Result<u64> {
         Ok(self.reap().await?.unwrap_or(0))
     }
@@ -410,7 +410,7 @@ impl Store {
     /// `silence_ms` computes: it would wait for ever. Tells how much that was.
     ///
     /// # Errors
-    /// When the database fails; what was ended until then stays so.
+    /// The database fails; what was ended until then stays so.
     pub async fn end_outdated(&self, physics_version: i64, silence_ms: i64) -> Result<u64> {
         let mut ended = 0;
         loop {
@@ -437,16 +437,16 @@ impl Store {
     /// Work items that are not final, by state.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn queue_depths(&self) -> Result<QueueDepths> {
         let (waiting, queued, held, leased) = query(sql::queue::DEPTHS).one(&self.database).await?;
         Ok(QueueDepths { waiting, queued, held, leased })
     }
 
-    /// How many work items that are not final an owner has.
+    /// Number of an owner's work items that are not final.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn open_work(&self, owner: &str) -> Result<u64> {
         let number: i64 = query(sql::queue::OPEN_WORK).bind(owner).scalar(&self.database).await?;
         Ok(number.unsigned_abs())
@@ -489,7 +489,7 @@ fn with_result(statement: Query, lease: &Lease, result: &NewResult<'_>) -> Query
         .bind(artifacts_json(result.artifacts))
 }
 
-/// Whether a result was stored, by the word of the database.
+/// True if a result was stored, by the database's word for the outcome.
 fn is_done(outcome: &str) -> Result<bool> {
     match outcome.strip_prefix("missing ") {
         Some(blob) => Err(StoreError::BlobMissing(blob.to_owned())),

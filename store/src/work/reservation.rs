@@ -2,7 +2,7 @@
 //!
 //! A blob is written before the row that names it, and no lock is held while it is: an object store may be slow, and everybody would wait
 //! for it. Instead the blob is reserved, for an hour. The collector deletes what no row names and nobody has reserved, and notes that it
-//! is about to; whoever wants to reserve such a blob waits until it is gone, and writes it again.
+//! is about to; a worker that wants to reserve such a blob waits until it is gone, and writes it again.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -19,19 +19,19 @@ use crate::error::{Result, StoreError};
 use crate::store::Store;
 use crate::work::lease::{Lease, Renewal};
 
-/// How long a reservation holds \[ms\]: from before a blob is written until the row that names it is stored.
+/// Validity of a reservation \[ms\]: from before a blob is written until the row that names it is stored.
 const RESERVED_MS: i64 = 3_600_000;
 
-/// How often it is looked whether a blob has been deleted.
+/// Interval of checks for the deletion of a blob.
 const POLL: Duration = Duration::from_millis(50);
 
 impl Store {
     /// Reserves all blobs of a result that is computed, before they are written ([`BlobStore::put`](crate::BlobStore::put)): for an hour, and
-    /// from then on as long as a row names them. The lease is extended with them, as by [`renew`](Self::renew): who has lost it need not
+    /// from then on as long as a row names them. The lease is extended with them, as by [`renew`](Self::renew): a worker that has lost it need not
     /// write them.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn reserve(&self, lease: &Lease, lease_ms: i64, blobs: &[BlobId]) -> Result<Renewal> {
         let names: BTreeSet<String> = blobs.iter().map(BlobId::to_string).collect();
         let wanted = json!(names).to_string();
@@ -50,12 +50,12 @@ impl Store {
             if renewal == Renewal::Lost || reserved == names.len() as i64 {
                 return Ok(renewal);
             }
-            // Until the note of it runs out, if whoever was deleting one has died.
+            // Until the note of it runs out, if the collector that was deleting one has died.
             tokio::time::sleep(POLL).await;
         }
     }
 
-    /// The same once, where statements are no messages. Tells how many blobs are reserved.
+    /// The same once, if statements are no messages. Returns the number of reserved blobs.
     async fn reserve_by_steps(&self, lease: &Lease, lease_ms: i64, wanted: &str) -> Result<(i64, Renewal)> {
         let mut tx = self.write_one().await?;
         let renewal = Renewal::of(lease.renewing(lease_ms, 1.0).first_scalar(&mut tx).await?);
@@ -72,7 +72,7 @@ impl Store {
     /// then on as long as a row names it.
     ///
     /// # Errors
-    /// When the database or the object store fails.
+    /// The database or the object store fails.
     pub async fn put_blob(&self, bytes: Vec<u8>) -> Result<BlobId> {
         self.reserve_one(BlobId::of(&bytes)).await?;
         self.blobs().put(bytes).await
@@ -81,7 +81,7 @@ impl Store {
     /// The same of a file; a large one is never in memory as a whole. Gives its size \[bytes\], too.
     ///
     /// # Errors
-    /// When the file cannot be read, or the database or the object store fails.
+    /// The file cannot be read, or the database or the object store fails.
     pub async fn put_blob_file(&self, file: &File) -> Result<(BlobId, u64)> {
         let file = NamedFile::read(file).await?;
         self.reserve_one(file.id()).await?;
@@ -97,7 +97,7 @@ impl Store {
             if !reserve.rows::<(String,)>(&self.database).await?.is_empty() {
                 return Ok(());
             }
-            // Until the note of it runs out, if whoever was deleting it has died.
+            // Until the note of it runs out, if the collector that was deleting it has died.
             tokio::time::sleep(POLL).await;
         }
     }

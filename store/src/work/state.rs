@@ -1,11 +1,11 @@
-//! The state machine of work: where a work item stands, what takes it on, and how many points of a sweep stand where.
+//! The state machine of work: states of work items, transitions, and counts of a sweep's points by state.
 
 use crate::error::{Result, StoreError};
 
 /// Content hash of a point: equal keys, equal results.
 pub type WorkKey = [u8; 32];
 
-/// Where a work item stands.
+/// State of a work item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WorkState {
     /// A retry that is not due yet.
@@ -84,10 +84,10 @@ pub const TRANSITIONS: &[Transition] = {
         Transition {
             from: Done,
             to: Queued,
-            cause: "a sweep asks to recompute it, or a table of its result is lost",
+            cause: "a sweep requests to recompute it, or a table of its result is lost",
         },
-        Transition { from: Failed, to: Queued, cause: "retried, or a sweep asks to recompute it" },
-        Transition { from: Dead, to: Queued, cause: "retried, or a sweep asks to recompute it" },
+        Transition { from: Failed, to: Queued, cause: "retried, or a sweep requests to recompute it" },
+        Transition { from: Dead, to: Queued, cause: "retried, or a sweep requests to recompute it" },
         Transition { from: Cancelled, to: Queued, cause: "retried, or a sweep wants it" },
     ]
 };
@@ -110,15 +110,15 @@ pub struct StateCounts {
 }
 
 impl StateCounts {
-    /// Those whose state will not change by itself.
+    /// Number of those whose state does not change by itself.
     pub(crate) fn final_ones(&self) -> i64 {
         self.done + self.failed + self.cancelled
     }
 }
 
 impl Stage {
-    /// Whether work at this stage is open: still to be computed, or under way. The state of other work is final, and changes
-    /// only if somebody asks for it. The database's column `is_open`.
+    /// True if work at this stage is open: still to be computed, or under way. The state of other work is final, and changes
+    /// only on request. The database's column `is_open`.
     pub fn is_open(self) -> bool {
         matches!(self, Stage::Queued | Stage::Running)
     }
@@ -147,7 +147,7 @@ impl WorkState {
         WorkState::Cancelled,
     ];
 
-    /// How the sweeps that have the work count it.
+    /// Stage as which sweeps count the work.
     pub fn stage(self) -> Stage {
         match self {
             WorkState::Waiting | WorkState::Queued => Stage::Queued,
@@ -158,7 +158,7 @@ impl WorkState {
         }
     }
 
-    /// Whether there is a [transition](TRANSITIONS) to another state.
+    /// True if there is a [transition](TRANSITIONS) to another state.
     pub fn may_become(self, other: WorkState) -> bool {
         TRANSITIONS.iter().any(|transition| transition.from == self && transition.to == other)
     }

@@ -18,9 +18,9 @@ pub struct WorkerRecord {
     pub version: String,
     /// Version of its numbers.
     pub physics_version: i64,
-    /// When it started \[ms since the epoch\].
+    /// Time of its start \[ms since the epoch\].
     pub started: i64,
-    /// When it was last heard of \[ms since the epoch\].
+    /// Time of its last heartbeat \[ms since the epoch\].
     pub last_seen: i64,
 }
 
@@ -28,7 +28,7 @@ impl Store {
     /// Registers a worker, or renews its entry. The times of `worker` are taken from the database's clock.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn register_worker(&self, worker: &WorkerRecord) -> Result<()> {
         query(sql::worker::REGISTER)
             .bind(&worker.id)
@@ -44,17 +44,17 @@ impl Store {
     /// Removes a worker that ends.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn remove_worker(&self, id: &str) -> Result<()> {
         query(sql::worker::REMOVE).bind(id).execute(&self.database).await?;
         Ok(())
     }
 
-    /// Takes the word of who watches a worker's process that it is gone: its leases end now, and the next claim sees them as run
+    /// Takes the word of a worker's supervisor that its process is gone: its leases end now, and the next claim sees them as run
     /// out, with what is known of its end (as [`note_worker`](Self::note_worker) has it). Returns how many there were.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn bury_worker(&self, host: &str, process: i64, note: Option<&str>) -> Result<u64> {
         let ended = query(sql::worker::END_LEASES)
             .bind(host)
@@ -70,7 +70,7 @@ impl Store {
     /// seems after the clock was set back, has been silent since.
     ///
     /// # Errors
-    /// When the database fails.
+    /// The database fails.
     pub async fn workers(&self, within_ms: i64) -> Result<Vec<WorkerRecord>> {
         query(sql::worker::LIST).bind(within_ms).records(&self.database, WorkerRecord::read).await
     }

@@ -77,5 +77,5 @@ fn free_ports<const N: usize>() -> [u16; N] {
     })
 }
 
-/// Where free ports are looked for.
+/// Range of ports that are tried.
 const PORTS: std::ops::Range<u16> = 12_000..32_000;

@@ -16,7 +16,7 @@ use super::small_disk::SmallDisk;
 /// Names the directory of PostgreSQL's programs where they are in none of the usual places.
 const PROGRAMS: &str = "DRILLSWEEP_POSTGRES_BIN";
 
-/// How long a server may take to start or to stop.
+/// Time that a server may take to start or to stop.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The settings of all servers: small, and without a copy of what goes to the disk. A server that is killed loses nothing: the system

@@ -59,7 +59,7 @@ impl Proxy {
         Proxy { address, shared }
     }
 
-    /// Where clients reach it.
+    /// Address for clients.
     pub(crate) fn address(&self) -> &str {
         &self.address
     }

@@ -24,10 +24,10 @@ const BUCKET: &str = "drillsweep-tests";
 const ACCESS_KEY_ID: &str = "tests";
 const SECRET_ACCESS_KEY: &str = "a secret of these tests";
 
-/// How long it may take to start; alone on a machine it takes 4 s.
+/// Time that it may take to start; alone on a machine it takes 4 s.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// How often it is looked whether it has.
+/// Interval of checks for its start.
 const POLL: Duration = Duration::from_millis(50);
 
 /// Ports of 127.0.0.1.
@@ -45,7 +45,7 @@ pub(crate) struct Seaweed {
     ports: Ports,
     /// None while it is killed.
     process: Option<Process>,
-    /// Whether it serves its protocol by TLS as well.
+    /// True if it serves its protocol by TLS as well.
     has_tls: bool,
 }
 
@@ -55,7 +55,7 @@ pub(crate) struct StoredFile {
     pub(crate) name: String,
     /// Its size.
     pub(crate) bytes: u64,
-    /// Where its content lies: another place after every write.
+    /// Place of its content, another one after every write.
     pub(crate) place: String,
 }
 
@@ -145,7 +145,7 @@ impl Seaweed {
         }
     }
 
-    /// Whether it answers by its protocol and can write.
+    /// True if it answers by its protocol and can write.
     fn is_ready(&self) -> bool {
         let status = format!("http://127.0.0.1:{}/status", self.ports.s3[0]);
         let answers = agent().get(status).call().is_ok_and(|answer| answer.status() == 200);
@@ -186,7 +186,7 @@ impl Seaweed {
         }
     }
 
-    /// Where a file of the bucket is, past the S3 protocol.
+    /// Address of a file of the bucket, past the S3 protocol.
     fn file(&self, name: &str) -> String {
         format!("http://127.0.0.1:{}/buckets/{BUCKET}/{name}", self.ports.filer[0])
     }
@@ -230,7 +230,7 @@ impl Seaweed {
     }
 }
 
-/// For requests that are answered whatever the status is.
+/// Client for requests that are answered whatever the status is.
 fn agent() -> ureq::Agent {
     ureq::Agent::config_builder().http_status_as_error(false).proxy(None).build().into()
 }

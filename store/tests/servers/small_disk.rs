@@ -61,7 +61,7 @@ impl SmallDisk {
         &self.path
     }
 
-    /// Where it is mounted, for processes in its namespace.
+    /// Mount point, for processes in its namespace.
     pub(crate) fn mount_point(&self) -> &Path {
         self.mount_point.path()
     }

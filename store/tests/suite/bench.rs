@@ -40,7 +40,7 @@ pub(crate) trait Engine {
         self.write_object("probe", b"");
     }
 
-    /// Whether the database has these bytes anywhere on its disk, whatever column they are in.
+    /// True if the database has these bytes anywhere on its disk, whatever column they are in.
     fn database_holds(&self, bytes: &[u8]) -> bool;
 
     /// The store, as it is now.

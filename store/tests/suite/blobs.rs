@@ -140,7 +140,7 @@ async fn a_file_is_the_blob_of_its_bytes<P: Place>() {
         assert_eq!(blobs.put_file(&file).await.unwrap().0, id);
         assert_eq!(place.objects(), stored, "what is there is not written again");
 
-        // What is damaged is replaced, and not handed out before.
+        // A damaged blob is replaced, and not handed out before.
         place.write_object(&object_name(&id.to_string()), b"damaged");
         let fetched = blobs.get_into(id, tempfile::tempfile().unwrap()).await;
         assert!(fetched.unwrap_err().is_damage());

@@ -40,7 +40,7 @@ pub(crate) async fn work_that_another_live_sweep_wants_goes_on<E: Engine>() {
     assert_eq!(running.lease.key, key(1));
     assert!(store.cancel_sweep("a").await.unwrap());
     assert_eq!(store.renew(&running.lease, LEASE_MS, 0.5).await.unwrap(), Renewal::Held);
-    // For the cancelled sweep it is over, whatever others have still to wait for.
+    // The cancelled sweep is final, whatever others still wait for.
     assert_eq!(states(&store, "a").await, [WorkState::Cancelled; 3]);
     let record = sweep_record(&store, "a").await;
     assert_eq!(record.counts, StateCounts { total: 3, cancelled: 3, ..StateCounts::default() });
@@ -90,7 +90,7 @@ pub(crate) async fn cancelled_work_is_queued_again_when_it_is_asked_for_again<E:
     assert_eq!(states(&store, "b").await, [WorkState::Queued]);
     assert_eq!(claim(&store, "w").await.lease.key, key(2));
     assert_eq!(claim_or_none(&store, "w").await, None);
-    // What others have computed is no matter of the cancelled sweep until there is a result.
+    // Attempts of others do not concern the cancelled sweep until there is a result.
     let record = sweep_record(&store, "a").await;
     assert_eq!((record.counts.running, record.counts.cancelled), (0, 2));
     assert!(record.finished.is_some());
@@ -130,7 +130,7 @@ pub(crate) async fn a_sweep_whose_points_all_go_on_for_another_one_is_finished<E
     assert!(sweep_record(&store, "a").await.finished.is_some());
     assert!(store.cancel_sweep("a").await.unwrap());
     assert_eq!(sweep_record(&store, "a").await.counts.cancelled, 2);
-    // Who takes the cancellation back sees again where they stand.
+    // Taking the cancellation back shows their state again.
     assert_eq!(store.retry_sweep("a").await.unwrap(), Some(0));
     let record = sweep_record(&store, "a").await;
     assert_eq!((record.counts.queued, record.counts.cancelled, record.finished), (2, 0, None));

@@ -278,7 +278,7 @@ async fn copy_in(store: &Store, are_done: &AtomicBool) {
             return;
         }
         for content in contents(point) {
-            // What nobody has reserved may be deleted while it is being written.
+            // A blob without a reservation may be deleted while it is being written.
             let _ = store.blobs().put(content).await;
         }
     }

@@ -25,7 +25,7 @@ pub(crate) async fn a_paused_sweep_is_not_handed_out_until_it_goes_on<E: Engine>
     let depths = QueueDepths { held: 1, leased: 1, ..QueueDepths::default() };
     assert_eq!(store.queue_depths().await.unwrap(), depths);
     assert_eq!(engine.after(9_000).await.census(LONG_AGO).await.unwrap().oldest_queued_ms, 0);
-    // What is under way goes on; what comes back waits with the rest.
+    // Running points continue; returned ones wait with the rest.
     assert!(store.release(&running.lease).await.unwrap());
     assert_eq!(claim_or_none(&store, "w").await, None);
     assert_eq!(states(&store, "s").await, [WorkState::Queued; 2]);
@@ -95,7 +95,7 @@ pub(crate) async fn a_change_is_refused_where_another_one_was_made_meanwhile<E: 
     let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
     let read = sweep_record(&store, "s").await.revision;
-    // That the points go on is no change that anybody has asked for.
+    // Progress of the points is no change of the sweep.
     assert!(finish(&store, &claim(&store, "w").await).await);
     let named = |name: &str| SweepChanges { name: Some(Some(name.to_owned())), ..SweepChanges::default() };
     assert_eq!(store.change_sweep("s", &named("anne's"), Some(read)).await.unwrap(), ChangeOutcome::Changed);
@@ -247,7 +247,7 @@ pub(crate) async fn a_refresh_by_another_owner_leaves_finished_sweeps_as_they_ar
     // The sweep has its points, whichever work they are of.
     let lacking = store.lacking_points("new", &sweep("new", [1, 2, 3]).points).await.unwrap();
     assert_eq!(lacking, [3]);
-    // Who refreshes once more recomputes what is theirs, and what nobody else has.
+    // Another refresh recomputes its own points, and those that nobody else has.
     submit(&store, &NewSweep { cache: CachePolicy::Refresh, ..sweep("again", [1]) }).await;
     assert_eq!(states(&store, "again").await, [WorkState::Queued]);
     assert_eq!(states(&store, "old").await, [WorkState::Queued, WorkState::Failed]);
@@ -294,7 +294,7 @@ pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
     finish_with(&store, "fourth", r#"{"radius":2}"#, b"another orbit", true).await;
     let disagreement = r#""disagreement":{"differs":"history","earlier":{"worker":"third"}}"#;
     assert_eq!(json(&provenance().await), json(&format!(r#"{{"worker":"fourth",{disagreement}}}"#)));
-    // That the last two agree does not make it good.
+    // Agreement of the last two does not resolve it.
     submit(&store, &refresh("again")).await;
     finish_with(&store, "fifth", r#"{"radius":2}"#, b"another orbit", true).await;
     assert_eq!(json(&provenance().await), json(&format!(r#"{{"worker":"fifth",{disagreement}}}"#)));

@@ -60,7 +60,7 @@ pub(crate) async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first
     let timeouts = FailureFilter { class: Some("timeout"), ..everything };
     assert_eq!(all(&store, timeouts).await, places(&[("a", 2)]));
 
-    // What is tried again is not given up any more.
+    // Retried points are no longer given up.
     assert_eq!(store.retry_sweep("a").await.unwrap(), Some(2));
     assert_eq!(all(&store, everything).await, places(&[("b", 2)]));
 }

@@ -4,7 +4,7 @@ use drillsweep_store::{NewSweep, Store, WorkKey};
 
 use crate::bench::{Engine, claim, finish, finish_and_claim, key, submit, sweep};
 
-/// How far apart start-time fair queueing lets two owners of equal weight get, who both have work all the time: the
+/// Largest lead under start-time fair queueing between two owners of equal weight who both have work all the time: the
 /// cost of one piece of work of each (Goyal, Vin and Cheng 1996, theorem 1).
 const BOUND: usize = 2;
 

@@ -36,7 +36,7 @@ fn names(server: &Seaweed) -> Vec<String> {
     server.files(PREFIX).into_iter().map(|file| file.name).collect()
 }
 
-/// That an error says that the service cannot now, and not that anything is lost.
+/// Asserts that an error reports an unavailable service, and no loss.
 #[track_caller]
 fn assert_unavailable<T: std::fmt::Debug>(result: drillsweep_store::Result<T>) {
     let error = result.expect_err("nobody answers");
@@ -161,7 +161,7 @@ async fn what_was_written_is_known_though_the_answer_was_lost() {
     assert_eq!(blobs.get(id).await.unwrap(), content);
 
     let (file, large) = large_file();
-    // What completes an upload.
+    // The request that completes an upload.
     proxy.set(Behaviour::LoseAnswerTo("?uploadId="));
     assert_eq!(blobs.put_file(&file).await.unwrap(), (large, 24_000_000));
     assert_eq!(proxy.disturbed(), 2);

@@ -60,7 +60,7 @@ pub(crate) async fn a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour<
     assert_eq!(collect(&engine.after(2 * DAY_MS + HOUR_MS - 60_000).await).await, Garbage::default());
     let found = collect(&engine.after(2 * DAY_MS + HOUR_MS + 60_000).await).await;
     assert_eq!(found, Garbage { blobs: 1, blob_bytes: 1_000, ..Garbage::default() });
-    // What has been deleted can be written again.
+    // A deleted blob can be written again.
     let blob = later.put_blob(vec![7; 1_000]).await.unwrap();
     assert_eq!(later.blobs().get(blob).await.unwrap().len(), 1_000);
 }
@@ -152,7 +152,7 @@ pub(crate) async fn a_sweep_goes_at_its_time_and_leaves_what_others_have<E: Engi
     let point = point_record(&store, "stays", 1).await;
     assert!(point.summary_json.is_some());
     assert_eq!(point.scenario.unwrap().base_json, r#"{"scenario":"goes"}"#);
-    // What was forgotten can be asked for again.
+    // A deleted point can be requested again.
     submit(&store, &sweep("again", [1])).await;
     submit(&store, &sweep("more", [9])).await;
     assert!(store.sweep("again").await.unwrap().unwrap().finished.is_none());
@@ -182,7 +182,7 @@ pub(crate) async fn a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinis
     assert_eq!(delete(false).await, expected);
     assert!(store.sweep("a").await.unwrap().is_none());
     assert_eq!(delete(false).await, DeleteOutcome::NoSuchSweep);
-    // What others have stays.
+    // Results that others share stay.
     assert!(point_record(&store, "b", 1).await.summary_json.is_some());
     assert_eq!(store.last_collection().await.unwrap(), None);
     let garbage = engine.after(2 * DAY_MS).await.collect_garbage(&policy(), false).await.unwrap();

@@ -11,7 +11,7 @@ use crate::bench::{Engine, claim, finish, submit, sweep, sweep_record};
 /// Many times what is written under one hold of the lock.
 const POINTS: u32 = 5_000;
 
-/// How long what was begun is left to those who began it \[ms\].
+/// Time for which a change is left to the process that began it \[ms\].
 const SILENCE_MS: i64 = 60_000;
 
 fn large(id: &str) -> NewSweep {
@@ -73,7 +73,7 @@ pub(crate) async fn a_large_submission_lets_others_in_between<E: Engine>() {
         outcome = store.submit_sweep(&other) => assert_eq!(outcome.unwrap(), SubmitOutcome::Created),
         _ = &mut submission => panic!("the small sweep waits for the large one"),
     }
-    // What was computed before the sweep was seen counts as well.
+    // Results from before the sweep was seen count as well.
     let worker = Store::open(&engine.config(Role::Worker, 0)).await.unwrap();
     let working = async {
         for _ in 0..2 {

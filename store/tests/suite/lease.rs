@@ -295,7 +295,7 @@ pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
             r#"{"class":"crash","reason":"3 workers went silent while they simulated it; the last one was ended by signal 9"}"#
         ))
     );
-    // What was known of an earlier one is forgotten with the next claim.
+    // The next claim clears the notes on an earlier one.
     assert_eq!(end.retry_sweep("s").await.unwrap(), Some(1));
     for death in 0..3 {
         let lease = claim(&engine.after((6 + 2 * death) * LEASE_MS).await, "w").await.lease;
@@ -365,7 +365,7 @@ pub(crate) async fn points_that_failed_together_do_not_come_back_together<E: Eng
             clock += wait / 4 + 10_000;
         }
     }
-    // Of waits spread evenly over 40 to 60 s about half are over after 50 s; without a spread all would be.
+    // About half of the waits spread evenly over 40 to 60 s are over after 50 s; without a spread all would be.
     let store = engine.after(clock).await;
     store.reap_expired().await.unwrap();
     let ready = store.queue_depths().await.unwrap().queued;
@@ -445,7 +445,7 @@ pub(crate) async fn work_of_numbers_that_nobody_computes_any_more_ends_and_says_
     assert_eq!(states(&later, "new").await, [WorkState::Queued]);
     let error = point_record(&later, "s", 3).await.error_json.unwrap();
     assert!(error.contains("outdated") && error.contains(&format!("physics version {PHYSICS} ")), "{error}");
-    // What was under way ends when its worker is gone.
+    // A running point ends when its worker is gone.
     assert_eq!(running.lease.key, key(1));
     assert_eq!(later.reap_expired().await.unwrap(), 1);
     assert_eq!(later.end_outdated(PHYSICS + 1, SILENCE_MS).await.unwrap(), 1);
@@ -484,7 +484,7 @@ pub(crate) async fn workers_are_listed_while_they_are_heard_of<E: Engine>() {
     assert_eq!(ids(120_000).await, ["b"]);
 }
 
-/// How far the clock is set back in the tests below.
+/// Step by which the tests below set the clock back.
 const BACK_MS: i64 = 3_600_000;
 
 pub(crate) async fn a_clock_that_is_set_back_keeps_no_point_with_a_dead_worker<E: Engine>() {

@@ -1,4 +1,4 @@
-//! Where objects can lie, and what of it is found out past the store.
+//! Places for objects, with access past the store.
 
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub(crate) trait Place {
     /// A place with nothing in it.
     fn new() -> Self;
 
-    /// Where it is.
+    /// Location of the place.
     fn location(&self) -> ObjectsLocation;
 
     /// Everything in it, by name.

@@ -65,7 +65,7 @@ impl<P: Place> Engine for Postgres<P> {
     }
 }
 
-/// Whether a file in a directory or below has these bytes.
+/// True if a file in a directory or below has these bytes.
 fn holds(directory: &Path, bytes: &[u8]) -> bool {
     std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path()).any(|path| {
         if path.is_dir() {
@@ -287,14 +287,14 @@ async fn what_follows_from_a_change_is_done_by_whoever_comes_next_where_its_proc
     }
     let events = store.events("s", 0, 100).await.unwrap();
     let number = |state| events.iter().filter(|event| event.state == state).count();
-    // Those under way are told to stop.
+    // Running ones are requested to stop.
     assert_eq!((number(WorkState::Leased), number(WorkState::Cancelled), events.len()), (5 + 5, 1, 11));
     assert!(events.is_sorted_by_key(|event| event.seq));
     let counts = sweep_record(&store, "s").await.counts;
     assert_eq!((counts.running, counts.cancelled), (5, 1));
 }
 
-/// How many connections of stores have been asked for something since a moment, by the database's clock.
+/// Number of connections of stores that have had a request since a moment, by the database's clock.
 async fn asked_since(database: &PgPool, moment: &str) -> i64 {
     let count = "SELECT count(*) FROM pg_stat_activity
                  WHERE application_name = 'drillsweep' AND query_start > $1::text::timestamptz";
@@ -365,7 +365,7 @@ async fn what_was_pending_when_a_dump_was_made_is_applied_once_it_is_restored() 
     let database = engine.database().await;
     submit(&store, &sweep("s", 0..4)).await;
     claim_and_die(&database).await;
-    // Where a dump is restored, transactions are counted from the beginning: all that it tells of seem to be still to come.
+    // Restoring a dump counts transactions from the beginning: all that it names seem to be still to come.
     sqlx::raw_sql(
         "UPDATE transition SET transaction = '4000000000'; UPDATE transitions_applied SET up_to = '4000000000'",
     )

@@ -56,7 +56,7 @@ pub(crate) async fn what_fails_to_be_computed_again_is_not_tried_at_every_look<E
     fail(&store, &claim(&store, "w").await).await;
     assert_eq!(store.queue_damaged(&key(1), blob, PHYSICS).await.unwrap(), Repair::TriedBefore);
     assert_eq!(claim_or_none(&store, "w").await, None);
-    // Who asks for the point wants it whole.
+    // A request for the point needs it whole.
     submit(&store, &sweep("t", [1])).await;
     assert_eq!(states(&store, "t").await, [WorkState::Queued]);
     assert!(finish(&store, &claim(&store, "w").await).await);

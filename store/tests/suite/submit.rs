@@ -81,7 +81,7 @@ pub(crate) async fn the_same_point_is_computed_once_for_every_sweep_that_has_it<
         assert_eq!(record.counts, StateCounts { total: 2, done: 2, ..StateCounts::default() });
         assert!(record.finished.is_some());
     }
-    // What is known counts at once.
+    // Known results count at once.
     submit(&store, &sweep("c", [1, 3])).await;
     let record = sweep_record(&store, "c").await;
     assert_eq!(record.counts, StateCounts { total: 2, done: 2, ..StateCounts::default() });
@@ -119,7 +119,7 @@ pub(crate) async fn a_point_whose_result_is_part_of_a_fuller_one_is_not_computed
     }
     assert!(finish(&store, &under_way).await);
 
-    // What a sweep has by a fuller result it is not given again.
+    // A point that a sweep has by a fuller result is not added again.
     let points = partly("more").points;
     let added = store.append_points("part", &addition("{}", &points[..1], "{}"), 10).await.unwrap();
     assert_eq!(added, AppendOutcome::Added(0));

@@ -26,7 +26,7 @@ fn start(certified: &Certified) -> Server {
     Server::start_with_tls(certified)
 }
 
-/// That a certificate is refused, at once and in words that name the reason.
+/// Asserts that a certificate is refused, at once and in words that name the reason.
 #[track_caller]
 fn assert_refused(opened: Result<Store, StoreError>, reason: &str) {
     let error = opened.expect_err("it must not be trusted");

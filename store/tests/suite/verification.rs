@@ -63,7 +63,7 @@ pub(crate) async fn a_run_is_shared_with_whoever_asks_for_that_very_point<E: Eng
     assert_eq!(claim_or_none(&store, "w").await, None);
     assert_eq!(sweep_record(&store, "s").await.verification.done, 2);
     assert_eq!(states(&store, "reference").await, [WorkState::Done]);
-    // What was computed as a point verifies at once, and the other way round.
+    // The result of a point verifies at once, and the other way round.
     submit(&store, &verified(sweep("again", [1]), &[(1, 11)])).await;
     assert!(sweep_record(&store, "again").await.finished.is_some());
     // A sweep that has the same work as a point and as a run counts it as both.

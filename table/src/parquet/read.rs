@@ -1,4 +1,4 @@
-//! Reading Parquet tables: only the row groups and columns that are asked for, from wherever the bytes are.
+//! Reading Parquet tables: only the requested row groups and columns, from wherever the bytes are.
 
 use std::borrow::Cow;
 use std::io;
@@ -39,7 +39,7 @@ pub trait ReadAt: Send + Sync + 'static {
     /// The bytes of a range that lies in the file.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// They cannot be read.
     fn read_at(&self, range: Range<u64>) -> io::Result<Bytes>;
 }
 
@@ -60,7 +60,7 @@ impl ReadAt for Bytes {
 pub struct StoredTable<R: ReadAt> {
     reader: SerializedFileReader<Blocks<R>>,
     layout: Table,
-    /// Where each row group begins, and where the last one ends \[rows\].
+    /// Beginnings of the row groups, and the end of the last one \[rows\].
     bounds: Vec<usize>,
 }
 
@@ -68,9 +68,9 @@ impl<R: ReadAt> StoredTable<R> {
     /// Reads the footer.
     ///
     /// # Errors
-    /// When the bytes are not such a table.
+    /// The bytes are not such a table.
     pub fn open(source: R) -> Result<Self, TableError> {
-        // Nobody asks for statistics, which take more memory than all else in a footer.
+        // Statistics are not needed, and take more memory than all else in a footer.
         let options = ReadOptionsBuilder::new()
             .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
             .with_encoding_stats_policy(ParquetStatisticsPolicy::SkipAll)
@@ -90,7 +90,7 @@ impl<R: ReadAt> StoredTable<R> {
             };
             layout.push(name, column);
         }
-        // Units are those that were written, or where none were those of the vocabulary.
+        // Units are the written ones, or else those of the vocabulary.
         for entry in metadata.key_value_metadata().into_iter().flatten() {
             if let (Some(name), Some(unit)) = (entry.key.strip_prefix(UNIT_PREFIX), &entry.value)
                 && layout.columns.contains_key(name)
@@ -132,7 +132,7 @@ impl<R: ReadAt> StoredTable<R> {
     /// Some columns of some rows, in the order of the file. Columns that there are not, and rows beyond the end, are left out.
     ///
     /// # Errors
-    /// When the bytes cannot be read or are not such a table.
+    /// The bytes cannot be read or are not such a table.
     pub fn read(&self, columns: &[&str], rows: Range<usize>) -> Result<Table, TableError> {
         let mut table = self.layout.clone();
         table.columns.retain(|name, _| columns.contains(&name.as_str()));
@@ -145,7 +145,7 @@ impl<R: ReadAt> StoredTable<R> {
     /// `rows` every `stride`-th from the first on.
     ///
     /// # Errors
-    /// When a column is none of this table's.
+    /// A column is none of this table's.
     pub fn cut(self, layout: Table, rows: Range<usize>, stride: usize) -> Result<Cut<R>, TableError> {
         self.cut_runs(layout, rows, 1, stride)
     }
@@ -195,7 +195,7 @@ impl<R: ReadAt> StoredTable<R> {
     }
 }
 
-/// Which rows stay: of runs of `run` rows, counted from the row `origin` on, every `stride`-th.
+/// Selection of rows: every `stride`-th of runs of `run` rows, counted from the row `origin` on.
 #[derive(Clone, Copy)]
 struct Thinning {
     origin: usize,
@@ -206,7 +206,7 @@ struct Thinning {
 impl Thinning {
     const NONE: Thinning = Thinning { origin: 0, run: 1, stride: 1 };
 
-    /// Whether a row, which is not before the origin, stays.
+    /// True if a row, which is not before the origin, stays.
     fn keeps(&self, row: usize) -> bool {
         self.stride == 1 || ((row - self.origin) / self.run).is_multiple_of(self.stride)
     }
@@ -220,7 +220,7 @@ impl Thinning {
         self.origin + (row - self.origin).div_ceil(period) * period
     }
 
-    /// How many of `rows`, from the origin on, stay.
+    /// Number of `rows`, from the origin on, that stay.
     fn count(&self, rows: usize) -> usize {
         let period = self.run * self.stride;
         rows / period * self.run + (rows % period).min(self.run)
@@ -239,7 +239,7 @@ impl<R: ReadAt> Cut<R> {
     /// The part as a table in memory.
     ///
     /// # Errors
-    /// When the bytes cannot be read or are not such a table.
+    /// The bytes cannot be read or are not such a table.
     pub fn read(&self) -> Result<Table, TableError> {
         let mut table = self.layout.clone();
         self.stored.fill(&mut table, self.rows.clone(), self.thinning)?;
@@ -249,7 +249,7 @@ impl<R: ReadAt> Cut<R> {
     /// Some rows of the part, by their numbers in it, which ascend; as a table in memory. Rows that there are not are left out.
     ///
     /// # Errors
-    /// When the bytes cannot be read or are not such a table.
+    /// The bytes cannot be read or are not such a table.
     pub fn rows_at(&self, rows: &[usize]) -> Result<Table, TableError> {
         let mut table = self.layout.clone();
         let mut waiting = rows.iter().copied().peekable();
@@ -284,7 +284,7 @@ impl<R: ReadAt> Cut<R> {
     }
 }
 
-/// Rows of a piece of a row group with so many rows of `width` bytes.
+/// Rows of a piece of a row group with this many rows of `width` bytes.
 fn rows_of_piece(rows: usize, width: usize) -> usize {
     let most = (ROWS_BYTES / width.max(1)).max(rows.div_ceil(PIECES_OF_GROUP));
     most.min(PIECE_BYTES / width.max(1)).min(rows).max(1)
@@ -405,14 +405,14 @@ impl<R: ReadAt> io::Read for BlockReader<R> {
 /// Bytes at the end of a file that say how long its footer is.
 pub const FOOTER_END: u64 = 8;
 
-/// Bytes of memory that it takes to read so many columns of a stored table and write them in another format, a piece at a time, at most: by
-/// the length of its file, the file's last [`FOOTER_END`] bytes, and its rows; for all columns `u64::MAX`. To Parquet it takes [`MEMORY_OF_WRITER`](crate::parquet::MEMORY_OF_WRITER) besides.
+/// Bytes of memory that it takes to read this many columns of a stored table and write them in another format, a piece at a time, at most: by
+/// the length of its file, the file's last [`FOOTER_END`] bytes, and its rows; for all columns `u64::MAX`. Parquet takes [`MEMORY_OF_WRITER`](crate::parquet::MEMORY_OF_WRITER) in addition.
 pub fn memory(length: u64, end: &[u8], rows: u64, columns: u64) -> u64 {
-    /// Of the footer as it is read and decoded, by its length; writing Parquet makes another one.
+    /// Memory of the footer as it is read and decoded, per byte of its length; writing Parquet makes another one.
     const OF_FOOTER: u64 = 8;
     /// Bytes in the footer for a column of a row group, at least.
     const OF_CHUNK: u64 = 40;
-    /// Of a number, be it a whole one that may be missing.
+    /// Memory of a number, at most: a whole one that may be missing.
     const OF_VALUE: u64 = size_of::<Option<i64>>() as u64;
     let footer = match end {
         [a, b, c, d, _, _, _, _] => u64::from(u32::from_le_bytes([*a, *b, *c, *d])).min(length),
@@ -436,10 +436,10 @@ fn width(column: &Column) -> usize {
 }
 
 /// Reads a Parquet table: some columns or all, some rows or all. Rows beyond the end are left out. Units are those that were written,
-/// or where none were those of the vocabulary.
+/// or else those of the vocabulary.
 ///
 /// # Errors
-/// When the bytes are not a table that [`write()`](super::write()) writes.
+/// The bytes are not a table that [`write()`](super::write()) writes.
 pub fn read(bytes: Bytes, columns: Option<&[&str]>, rows: Option<Range<usize>>) -> Result<Table, TableError> {
     let stored = StoredTable::open(bytes)?;
     let all: Vec<&str> = stored.layout.columns.keys().map(String::as_str).collect();

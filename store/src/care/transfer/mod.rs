@@ -1,9 +1,9 @@
 //! Carrying a store over to another one, whichever engines and object stores the two are on.
 //!
 //! Blobs go first: they are named by their content, so that one that is there already is not copied again, and a transfer that was
-//! broken off goes on where it was. Rows follow in one transaction, table by table as they are, counters and events among them, and
+//! interrupted resumes. Rows follow in one transaction, table by table as they are, counters and events among them, and
 //! are compared with those that they come from before it is committed: nobody ever sees half a store. What triggers do stands in
-//! the rows already, and none of the schema's is for inserts but to tell who waits.
+//! the rows already, and none of the schema's is for inserts but to notify waiting processes.
 
 mod table;
 
@@ -43,7 +43,7 @@ const TABLES: &[&str] = &[
 #[cfg(test)]
 const LEFT: &[&str] = &["removal", "session", "upload", "worker"];
 
-/// How lately a worker has been heard of that is taken to be alive: it renews its entry several times within that.
+/// Silence after which a worker counts as gone: it renews its entry several times within that.
 const WORKER_SILENCE: Duration = Duration::from_secs(100);
 
 /// Names of blobs that are in memory at once.
@@ -52,7 +52,7 @@ const PAGE: i64 = 10_000;
 /// Blobs that are copied at the same time; a large one has a part of some megabytes in memory.
 const AT_ONCE: usize = 8;
 
-/// Whether a store is carried away that others use.
+/// Treatment of a source that others use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SourceUse {
     /// It is refused while workers are at it.
@@ -61,14 +61,14 @@ pub enum SourceUse {
     Running,
 }
 
-/// How far a transfer has come.
+/// Progress of a transfer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TransferProgress {
     /// Blobs are being copied, or were there.
     Blobs {
-        /// How many are done.
+        /// Number done.
         done: u64,
-        /// How many there are.
+        /// Number in all.
         of: u64,
     },
     /// The rows of a table are being copied.
@@ -84,7 +84,7 @@ pub struct TransferReport {
     pub rows: Vec<(&'static str, u64)>,
     /// Blobs that rows name.
     pub blobs: u64,
-    /// Those among them that were there already, and whole.
+    /// Number of those that were present already, and whole.
     pub blobs_present: u64,
     /// Size of those that were copied.
     pub bytes_copied: u64,
@@ -94,16 +94,14 @@ pub struct TransferReport {
     pub lost: Vec<String>,
 }
 
-/// Why a store is not carried over. The new one has no rows then.
+/// Errors of a transfer. The new store has no rows then.
 #[derive(Debug, thiserror::Error)]
 pub enum TransferError {
     /// Both are one database.
-    #[error("the store cannot be carried over to itself")]
+    #[error("the store cannot be copied to itself")]
     Itself,
     /// The new one holds something.
-    #[error(
-        "the database to carry the store over to is in use: it has rows in the table {0}; it must be an empty one"
-    )]
+    #[error("the target database is in use: it has rows in the table {0}; it must be empty")]
     NotEmpty(&'static str),
     /// Workers are at the old one.
     #[error(
@@ -118,11 +116,11 @@ pub enum TransferError {
     },
     /// The old one is of another version of this program.
     #[error(
-        "the table {0} of the store is not as this version of the program has it: open the store by this version once, as `drillsweep serve` does"
+        "the table {0} of the store has another schema than this version of the program: open the store by this version once, as `drillsweep serve` does"
     )]
     OtherSchema(&'static str),
     /// The rows written are not those read.
-    #[error("the table {0} of the new store is not that of the old one; nothing was kept of it")]
+    #[error("the table {0} of the new store differs from that of the old one; nothing was kept")]
     Differs(&'static str),
     /// A database or an object store failed.
     #[error(transparent)]
@@ -135,7 +133,7 @@ pub enum TransferError {
 /// back, under the fencing token that it has.
 ///
 /// # Errors
-/// When one of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
+/// One of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
 pub fn transfer<'a>(
     source: &'a StoreConfig,
     target: &'a StoreConfig,
@@ -197,7 +195,7 @@ async fn carry_over(
     Ok(report)
 }
 
-/// Whether two locations are one database, as far as they tell. Under different names it is refused for its rows.
+/// True if two locations name one database. One database under two names is refused for its rows.
 fn is_same(source: &DatabaseLocation, target: &DatabaseLocation) -> bool {
     match (source, target) {
         (DatabaseLocation::Sqlite(source), DatabaseLocation::Sqlite(target)) => {

@@ -1,4 +1,4 @@
-//! A table by its columns, as the database tells them, read and written whatever they are: a column that a later version adds is carried
+//! A table by its columns, as the database reports them, read and written whatever they are: a column that a later version adds is carried
 //! without a word about it here. That is why these statements, and no others, are composed.
 
 use futures::stream::BoxStream;
@@ -19,7 +19,7 @@ const BATCH_BYTES: usize = 4 << 20;
 /// A table that both engines have.
 pub(super) struct Table {
     pub(super) name: &'static str,
-    /// By name, so that both engines have them in the same order.
+    /// Columns by name, so that both engines have them in the same order.
     columns: Vec<Column>,
 }
 
@@ -44,12 +44,12 @@ enum Kind {
 #[derive(PartialEq, Eq)]
 pub(super) struct Sum {
     pub(super) rows: u64,
-    /// Of all rows in the order of their keys.
+    /// Hash of all rows in the order of their keys.
     hash: blake3::Hash,
 }
 
 impl Table {
-    /// A table of a database; without columns where there is none.
+    /// A table of a database; without columns if there is none.
     pub(super) async fn read(name: &'static str, tx: &mut Transaction) -> Result<Self> {
         let columns: Vec<(String, String, i64)> =
             query(sql::transfer::COLUMNS).bind(name).rows(&mut *tx).await?;
@@ -66,7 +66,7 @@ impl Table {
         Ok(Self { name, columns: columns.into_iter().map(column).collect() })
     }
 
-    /// Whether both have the same columns, of kinds that go into each other.
+    /// True if both have the same columns, of kinds that convert into each other.
     pub(super) fn is_like(&self, other: &Table) -> bool {
         let column = |column: &Column| {
             let kind = if column.kind == Kind::Flag { Kind::Integer } else { column.kind };

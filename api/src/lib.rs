@@ -27,7 +27,7 @@ pub mod view;
 
 pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
-pub use event::{DeletedSweep, PointEvent};
+pub use event::PointEvent;
 pub use expand::{
     Expansion, Interruption, PointKey, PointKeys, SweepPoint, UNINTERRUPTED, check_patch, compose, expand,
     expand_added, key_text,

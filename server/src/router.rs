@@ -18,8 +18,8 @@ use crate::guard::middleware;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::{
-    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
-    snapshots, spectrogram, statistics, status, sweeps, verification, web,
+    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
+    spectrogram, statistics, status, sweeps, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, as it is served. The program holds it compressed: it has a tenth of the size, and is seldom read.
@@ -59,7 +59,6 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
         ("/v1/sweeps/{id}/table/columns", get(sweeps::columns)),
         ("/v1/sweeps/{id}/verification", get(verification::show)),
         ("/v1/sweeps/{id}/events", get(events::follow)),
-        ("/v1/events", get(all_events::follow)),
         ("/v1/sweeps/{id}/export", get(export::export)),
         ("/v1/runs", post(sweeps::create_run)),
         ("/v1/sweeps/{id}/points", get(points::list).post(sweeps::append)),

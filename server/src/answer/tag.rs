@@ -1,8 +1,9 @@
-//! Entity tags of sweeps: what changes are made on condition of.
+//! ETags of sweeps, on which conditional changes depend, and of lists.
 
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemKind, Sweep};
+use serde::Serialize;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::json::Json;
@@ -24,6 +25,29 @@ impl IntoResponse for Tagged {
             }
             Err(_) => Json(self.0).into_response(),
         }
+    }
+}
+
+/// JSON with a hash of it as `ETag`: a client that polls is answered 304 while nothing has changed.
+pub(crate) struct Hashed<T>(pub(crate) T);
+
+impl<T: Serialize> IntoResponse for Hashed<T> {
+    fn into_response(self) -> Response {
+        let body = match serde_json::to_vec(&self.0) {
+            Ok(body) => body,
+            Err(error) => return Error::internal(&error).into_response(),
+        };
+        // Weak, since the body may be compressed on its way.
+        let tag = match HeaderValue::try_from(format!("W/\"{}\"", blake3::hash(&body).to_hex())) {
+            Ok(tag) => tag,
+            Err(error) => return Error::internal(&error).into_response(),
+        };
+        let headers = [
+            (header::CONTENT_TYPE, HeaderValue::from_static("application/json")),
+            (header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache")),
+            (header::ETAG, tag),
+        ];
+        (headers, body).into_response()
     }
 }
 

@@ -3,7 +3,6 @@
 pub(crate) mod bodies;
 pub(crate) mod columns;
 pub(crate) mod expansions;
-pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
@@ -29,7 +28,6 @@ use crate::answer::stored::MEMORY_OF_FILE;
 use crate::app::bodies::Bodies;
 use crate::app::columns::KnownColumns;
 use crate::app::expansions::{ExpansionLimits, Expansions};
-use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::{Metrics, Occupancy};
@@ -114,8 +112,6 @@ pub(crate) struct App {
     pub(crate) polls: Arc<Shares>,
     /// Addresses that send tokens which are not valid.
     pub(crate) strangers: Arc<Strangers>,
-    /// Changes among all sweeps, for those event streams that report all.
-    pub(crate) feed: Arc<Feed>,
     pub(crate) columns: Arc<KnownColumns>,
     pictures: Arc<Pictures>,
     /// Memory for views of results, which read and write out tables \[KiB\].
@@ -146,7 +142,6 @@ impl App {
             streams: Shares::new("event streams", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             polls: Shares::new("long polls", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             strangers: Arc::new(strangers),
-            feed: Arc::default(),
             columns: Arc::default(),
             pictures: Arc::new(Pictures::new()),
             views: lane(config.large_answer_bytes / KIB),

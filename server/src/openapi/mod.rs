@@ -4,17 +4,15 @@
 pub(crate) mod answers;
 mod vocabulary;
 
-use drillsweep_api::{
-    DeletedSweep, ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList,
-};
+use drillsweep_api::{ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList};
 use drillsweep_table::Table;
 use serde_json::{Value, json};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
 
 use crate::route::{
-    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
-    snapshots, spectrogram, statistics, status, sweeps, verification,
+    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
+    spectrogram, statistics, status, sweeps, verification,
 };
 
 /// The document as it is committed: indented JSON with a final newline.
@@ -64,7 +62,6 @@ fn bound_members(document: &mut Value) {
         sweeps::columns,
         verification::show,
         events::follow,
-        all_events::follow,
         export::export,
         sweeps::create_run,
         points::list,
@@ -103,7 +100,7 @@ fn bound_members(document: &mut Value) {
         health::ready,
     ),
     components(schemas(
-        ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
+        ProblemDetails, Table, ExportManifest, PointEvent, PointList, SelectedPointList
     )),
     modifiers(&TokenSecurity),
     security(("token" = []), ()),

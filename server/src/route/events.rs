@@ -30,7 +30,7 @@ const LAST_EVENT_ID: &str = "last-event-id";
 const PAGE: i64 = 500;
 
 /// How long a client waits before it connects again.
-pub(crate) const RETRY: Duration = Duration::from_secs(2);
+const RETRY: Duration = Duration::from_secs(2);
 
 /// Where a stream begins.
 #[derive(Deserialize)]
@@ -104,7 +104,7 @@ pub(crate) async fn follow(
 }
 
 /// The `id` of the last event that a client has seen, by the header or else by the query.
-pub(crate) fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Option<i64>> {
+fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Option<i64>> {
     let after = match headers.get(LAST_EVENT_ID) {
         None => after,
         Some(value) => {

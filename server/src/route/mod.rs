@@ -1,10 +1,8 @@
 //! The routes, a file for each thing that is asked about.
 
-pub(crate) mod all_events;
 pub(crate) mod cost;
 pub(crate) mod events;
 pub(crate) mod export;
-pub(crate) mod feed;
 pub(crate) mod files;
 pub(crate) mod health;
 pub(crate) mod metrics;

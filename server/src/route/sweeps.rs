@@ -33,7 +33,7 @@ use crate::answer::format::{Answer, Format, PictureFormat, Tag};
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::answer::stored::Stored;
-use crate::answer::tag::{Tagged, changed_meanwhile, expected_revision};
+use crate::answer::tag::{Hashed, Tagged, changed_meanwhile, expected_revision};
 use crate::app::App;
 use crate::app::expansions::{Memory, Work};
 use crate::guard::audit::Owner;
@@ -354,7 +354,9 @@ pub(crate) struct ListQuery {
     id: Option<String>,
 }
 
-/// The sweeps, newest first
+/// List sweeps, newest first
+///
+/// Repeat the `ETag` as `If-None-Match` to poll: the answer is 304 while no listed sweep has changed.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -362,11 +364,18 @@ pub(crate) struct ListQuery {
         path = "/v1/sweeps",
         tag = "sweeps",
         operation_id = "list_sweeps",
-        params(ListQuery),
-        responses((status = 200, description = "A page of sweeps", body = SweepList), Problems)
+        params(ListQuery, Conditional),
+        responses(
+            (status = 200, description = "A page of sweeps", body = SweepList, headers(("ETag" = String))),
+            (status = 304, description = "The copy is right"),
+            Problems
+        )
     )
 )]
-pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
+pub(crate) async fn list(
+    State(app): State<App>,
+    Query(query): Query<ListQuery>,
+) -> Result<Hashed<SweepList>> {
     let limit = extract::page_size(query.limit)?;
     if let Some(cursor) = query.cursor.as_deref().filter(|cursor| uuid::Uuid::parse_str(cursor).is_err()) {
         return Err(Error::parameter("cursor", Some(cursor), "must be `next` of the page before"));
@@ -385,7 +394,7 @@ pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>)
     let next = records.last().filter(|_| !is_last).map(|record| record.id.clone());
     let mut sweeps: Vec<Sweep> = records.iter().map(records::sweep).collect::<Result<_>>()?;
     note_waiting(&app, &mut sweeps).await?;
-    Ok(Json(SweepList { sweeps, next }))
+    Ok(Hashed(SweepList { sweeps, next }))
 }
 
 /// Requests by which points were added that an answer has: who adds them one by one has thousands, and is answered every time.

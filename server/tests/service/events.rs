@@ -140,3 +140,18 @@ async fn twenty_open_streams_do_not_hold_the_service_up() {
         timeout(SOON, connection.read_to_end(&mut rest)).await.expect("the stream ends").unwrap();
     }
 }
+
+#[tokio::test]
+async fn a_thousand_streams_are_open_at_most() {
+    let bench = Bench::new().await;
+    let path = format!("/v1/sweeps/{}/events", bench.submit(three_points()).await);
+    let mut open = Vec::new();
+    for _ in 0..1000 {
+        let answer = bench.open(&path).await;
+        assert_eq!(answer.status(), StatusCode::OK);
+        open.push(answer);
+    }
+    bench.get(&path).await.problem(503, "unavailable");
+    open.pop();
+    assert_eq!(bench.open(&path).await.status(), StatusCode::OK);
+}

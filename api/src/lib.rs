@@ -6,6 +6,7 @@
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
+pub mod analysis;
 pub mod axis;
 mod bounded;
 pub mod cost;
@@ -18,7 +19,6 @@ pub mod point;
 pub mod preset;
 pub mod problem;
 pub mod request;
-pub mod scene;
 pub mod service;
 pub mod sweep;
 pub mod time_span;

@@ -18,8 +18,8 @@ use crate::guard::middleware;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::{
-    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
-    spectrogram, statistics, status, sweeps, verification, web,
+    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
+    snapshots, spectrogram, statistics, status, sweeps, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, as it is served. The program holds it compressed: it has a tenth of the size, and is seldom read.
@@ -49,19 +49,22 @@ pub(crate) fn routes(app: &App) -> Router {
 /// the same functions.
 fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
     vec![
-        ("/v1/sweeps", post(sweeps::create).get(sweeps::list)),
-        ("/v1/sweeps/{id}", get(sweeps::show).patch(sweeps::change).delete(sweeps::delete)),
-        ("/v1/sweeps/{id}/cancel", post(sweeps::cancel)),
-        ("/v1/sweeps/{id}/retry", post(sweeps::retry)),
-        ("/v1/sweeps/{id}/pause", post(sweeps::pause)),
-        ("/v1/sweeps/{id}/resume", post(sweeps::resume)),
-        ("/v1/sweeps/{id}/table", get(sweeps::table)),
-        ("/v1/sweeps/{id}/table/columns", get(sweeps::columns)),
+        ("/v1/sweeps", post(sweeps::submit::create).get(sweeps::list::list)),
+        (
+            "/v1/sweeps/{id}",
+            get(sweeps::show::show).patch(sweeps::change::change).delete(sweeps::change::delete),
+        ),
+        ("/v1/sweeps/{id}/cancel", post(sweeps::change::cancel)),
+        ("/v1/sweeps/{id}/retry", post(sweeps::change::retry)),
+        ("/v1/sweeps/{id}/pause", post(sweeps::change::pause)),
+        ("/v1/sweeps/{id}/resume", post(sweeps::change::resume)),
+        ("/v1/sweeps/{id}/table", get(sweeps::table::table)),
+        ("/v1/sweeps/{id}/table/columns", get(sweeps::table::columns)),
         ("/v1/sweeps/{id}/verification", get(verification::show)),
         ("/v1/sweeps/{id}/events", get(events::follow)),
         ("/v1/sweeps/{id}/export", get(export::export)),
-        ("/v1/runs", post(sweeps::create_run)),
-        ("/v1/sweeps/{id}/points", get(points::list).post(sweeps::append)),
+        ("/v1/runs", post(sweeps::submit::create_run)),
+        ("/v1/sweeps/{id}/points", get(points::list).post(sweeps::append::append)),
         ("/v1/sweeps/{id}/points/{n}", get(points::show)),
         ("/v1/failures", get(points::failures)),
         ("/v1/sweeps/{id}/points/{n}/artifacts", get(files::list)),
@@ -77,8 +80,8 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
         ("/v1/sweeps/{id}/points/{n}/energy", get(results::energy)),
         ("/v1/sweeps/{id}/points/{n}/course", get(results::course)),
         ("/v1/sweeps/{id}/points/{n}/statistics", get(statistics::show)),
-        ("/v1/sweeps/{id}/points/{n}/plan", get(scene::plan)),
-        ("/v1/sweeps/{id}/points/{n}/modes", get(scene::modes)),
+        ("/v1/sweeps/{id}/points/{n}/plan", get(analysis::plan)),
+        ("/v1/sweeps/{id}/points/{n}/modes", get(analysis::modes)),
         ("/v1/sweeps/{id}/points/{n}/cost", get(cost::show)),
         ("/v1/scenarios", get(scenarios::list).post(scenarios::read)),
         ("/v1/scenarios/{name}", get(scenarios::show)),

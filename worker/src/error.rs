@@ -9,7 +9,7 @@ use drillsweep_sim::study::cost::StudyError;
 use drillsweep_sim::transient::TransientError;
 use serde_json::{Map, json};
 
-use crate::artifact::ArtifactError;
+use crate::encode::ArtifactError;
 /// Why a point has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {

@@ -1,21 +1,18 @@
 //! Which format a table is served in, and how.
 
-use std::fmt::Debug;
-use std::fs::File;
 use std::io;
-use std::sync::LazyLock;
 
 use axum::body::{Body, Bytes};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
 use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
-use headers::{ETag, HeaderMapExt as _, IfNoneMatch};
 use serde::Deserialize;
 
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::stored::{Stored, StoredFile};
 
 /// The formats in which tables are served.
@@ -309,69 +306,6 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
         Format::Svg | Format::Png => {
             Err(io::Error::new(io::ErrorKind::Unsupported, "a table is no picture").into())
         }
-    }
-}
-
-/// Name that distinguishes this program from others that may write the same otherwise, of the same version too: the hash of its file. If
-/// that cannot be read, each start counts as a program of its own.
-static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
-    Ok(hash) => hash.to_hex().to_string(),
-    Err(error) => {
-        tracing::warn!(%error, "the program's file cannot be read: clients' copies hold until the next start only");
-        uuid::Uuid::now_v7().to_string()
-    }
-});
-
-fn hash_of_program() -> io::Result<blake3::Hash> {
-    let mut hasher = blake3::Hasher::new();
-    // What runs, where Linux tells: another file may have taken its path since it was started.
-    let file = File::open("/proc/self/exe").or_else(|_| File::open(std::env::current_exe()?))?;
-    hasher.update_reader(file)?;
-    Ok(hasher.finalize())
-}
-
-/// `ETag` of a body, a weak one, since it may be compressed on its way.
-#[derive(Debug, Clone)]
-pub(crate) struct Tag(String);
-
-impl Tag {
-    /// Of a body that depends on this alone besides its format and the program: the names of stored contents, and what is asked of
-    /// them. So it is known before the body is, which need not be made for a client that has it.
-    pub(crate) fn of(format: Format, depends_on: &impl Debug) -> Self {
-        let depends_on = (&*PROGRAM, format, depends_on);
-        Self::of_hash(&blake3::hash(format!("{depends_on:?}").as_bytes()))
-    }
-
-    fn of_hash(hash: &blake3::Hash) -> Self {
-        Self(format!("W/\"{}\"", hash.to_hex()))
-    }
-
-    /// Its text.
-    pub(crate) fn as_str(&self) -> &str {
-        &self.0
-    }
-
-    /// The answer to a client that says that it has a copy with this tag; none to one that does not. Who has any copy at all (`*`) does
-    /// not say that there is such an answer: making it shows that.
-    pub(crate) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
-        let known = headers.typed_get::<IfNoneMatch>().filter(|known| *known != IfNoneMatch::any())?;
-        let tag: ETag = self.0.parse().ok()?;
-        if known.precondition_passes(&tag) {
-            return None;
-        }
-        Some(self.on(StatusCode::NOT_MODIFIED.into_response()))
-    }
-
-    /// The response with what tells a client how long it may keep the body.
-    pub(crate) fn on(&self, mut response: Response) -> Response {
-        let headers = response.headers_mut();
-        if let Ok(tag) = self.0.parse() {
-            headers.insert(header::ETAG, tag);
-        }
-        // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
-        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
-        headers.insert(header::VARY, HeaderValue::from_static("accept"));
-        response
     }
 }
 

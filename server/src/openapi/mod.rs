@@ -11,8 +11,8 @@ use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
 
 use crate::route::{
-    cost, events, export, files, health, points, quantities, results, scenarios, scene, session, snapshots,
-    spectrogram, statistics, status, sweeps, verification,
+    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
+    snapshots, spectrogram, statistics, status, sweeps, verification,
 };
 
 /// The document as it is committed: indented JSON with a final newline.
@@ -49,23 +49,23 @@ fn bound_members(document: &mut Value) {
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     paths(
-        sweeps::create,
-        sweeps::list,
-        sweeps::show,
-        sweeps::change,
-        sweeps::delete,
-        sweeps::cancel,
-        sweeps::retry,
-        sweeps::pause,
-        sweeps::resume,
-        sweeps::table,
-        sweeps::columns,
+        sweeps::submit::create,
+        sweeps::list::list,
+        sweeps::show::show,
+        sweeps::change::change,
+        sweeps::change::delete,
+        sweeps::change::cancel,
+        sweeps::change::retry,
+        sweeps::change::pause,
+        sweeps::change::resume,
+        sweeps::table::table,
+        sweeps::table::columns,
         verification::show,
         events::follow,
         export::export,
-        sweeps::create_run,
+        sweeps::submit::create_run,
         points::list,
-        sweeps::append,
+        sweeps::append::append,
         points::show,
         points::failures,
         files::list,
@@ -81,8 +81,8 @@ fn bound_members(document: &mut Value) {
         results::energy,
         results::course,
         statistics::show,
-        scene::plan,
-        scene::modes,
+        analysis::plan,
+        analysis::modes,
         cost::show,
         scenarios::list,
         scenarios::read,

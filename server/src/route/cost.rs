@@ -8,10 +8,10 @@ use drillsweep_chart::{PNG_WIDTH, work_precision};
 use drillsweep_table::csv;
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::blocking::blocking;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
+use crate::answer::recordings;
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
@@ -87,7 +87,7 @@ pub(crate) async fn show(
     Path(PointPath { id, n }): Path<PointPath>,
     Query(CostQuery { format, measure }): Query<CostQuery>,
 ) -> Result<Response> {
-    let stored = artifact::stored(&app.store, &id, n, "cost").await?.whole().await?;
+    let stored = recordings::stored(&app.store, &id, n, "cost").await?.whole().await?;
     if format == CostFormat::Json {
         return Ok(answer(stored.into(), format));
     }

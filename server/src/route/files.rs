@@ -7,10 +7,10 @@ use drillsweep_api::{ArtifactEntry, ArtifactList, ProblemKind};
 use headers::{ETag, HeaderMapExt, IfNoneMatch, IfRange};
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 use crate::answer::json::Json;
+use crate::answer::recordings;
 use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::app::App;
@@ -49,7 +49,7 @@ pub(crate) async fn list(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
 ) -> Result<Json<ArtifactList>> {
-    let key = artifact::result_key(&app.store, &id, n).await?;
+    let key = recordings::result_key(&app.store, &id, n).await?;
     let entry = |artifact: drillsweep_store::Artifact| {
         Ok(ArtifactEntry {
             link: format!(
@@ -105,9 +105,9 @@ pub(crate) async fn show(
     Path(ArtifactPath { id, n, name }): Path<ArtifactPath>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let key = artifact::result_key(&app.store, &id, n).await?;
+    let key = recordings::result_key(&app.store, &id, n).await?;
     let ending = [PARQUET, JSON].into_iter().find_map(|ending| Some((name.strip_suffix(ending)?, ending)));
-    let stored = artifact::find(&app.store, &key, ending.map_or(&name, |(stem, _)| stem)).await?;
+    let stored = recordings::find(&app.store, &key, ending.map_or(&name, |(stem, _)| stem)).await?;
     if let Some((stem, ending)) = ending.filter(|(_, ending)| *ending != extension(&stored.media_type)) {
         let detail =
             format!("{stem} is kept as {stem}{}, not as {stem}{ending}", extension(&stored.media_type));

@@ -1,5 +1,6 @@
 //! The routes, a file for each thing that is asked about.
 
+pub(crate) mod analysis;
 pub(crate) mod cost;
 pub(crate) mod events;
 pub(crate) mod export;
@@ -10,7 +11,6 @@ pub(crate) mod points;
 pub(crate) mod quantities;
 pub(crate) mod results;
 pub(crate) mod scenarios;
-pub(crate) mod scene;
 pub(crate) mod session;
 pub(crate) mod snapshots;
 pub(crate) mod spectrogram;

@@ -14,11 +14,12 @@ use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
-use crate::answer::artifact::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat, Tag};
+use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
 use crate::answer::need::Need;
+use crate::answer::recordings::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
@@ -87,7 +88,7 @@ pub(crate) async fn profile(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let profile = artifact::stored(&app.store, &id, n, tables::PROFILE.name).await?;
+    let profile = recordings::stored(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
     if !format.is_picture() {
         return part(&app, profile, fields, format, file_name, &headers).await;
@@ -200,7 +201,7 @@ async fn whole_table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
-    let table = artifact::stored(&app.store, &id, n, name).await?;
+    let table = recordings::stored(&app.store, &id, n, name).await?;
     part(&app, table, query.fields, format, file_name(&id, n, name), &headers).await
 }
 
@@ -338,7 +339,7 @@ pub(crate) async fn history(
     let title = caption(&app.store, &id, n, "History").await?;
     let shows_bit = format.is_picture() && choice.is_none() && query.fields.is_none();
     let snapshots = match shows_bit {
-        true => artifact::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
+        true => recordings::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
         false => None,
     };
     let snapshots = snapshots.map(|stored| Snapshots::new(stored, &recording.statics)).transpose()?;

@@ -7,10 +7,11 @@ use drillsweep_api::view::history;
 use drillsweep_table::quantity::tables;
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, TableFormat, Tag};
+use crate::answer::format::{self, Answer, Format, TableFormat};
+use crate::answer::recordings;
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
 #[cfg(feature = "openapi")]
@@ -80,11 +81,11 @@ pub(crate) async fn show(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let file_name = file_name(&id, n, tables::SNAPSHOTS.name);
-    let stored = artifact::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
+    let stored = recordings::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
     if format == Format::Parquet && query.is_whole() {
         return whole_file(&app, stored, &file_name, &headers).await;
     }
-    let statics = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?;
+    let statics = recordings::stored(&app.store, &id, n, tables::STATICS.name).await?;
     let snapshots = Snapshots::new(stored, &statics)?;
     let node = query.node.map(|node| node as usize);
     if let Some(node) = node.filter(|node| *node > snapshots.nodes()) {

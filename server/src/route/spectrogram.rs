@@ -7,10 +7,11 @@ use drillsweep_api::view::spectrogram::{MOST_AMPLITUDES, SpectrogramRequest, spe
 use drillsweep_api::view::{node, spectrum};
 use serde::{Deserialize, Deserializer};
 
-use crate::answer::artifact::Recording;
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat, Tag};
+use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::recordings::Recording;
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]

@@ -8,10 +8,11 @@ use drillsweep_api::view::statistics::StatisticsTable;
 use drillsweep_table::quantity::tables::STATISTICS;
 use serde::Deserialize;
 
-use crate::answer::artifact::{Recording, mark_cut};
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat, Tag};
+use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::recordings::{Recording, mark_cut};
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};

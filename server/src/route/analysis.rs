@@ -5,13 +5,14 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::scene::{self, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::analysis::{self, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Format, Tag};
+use crate::answer::format::Format;
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
@@ -52,7 +53,7 @@ pub(crate) async fn plan(
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let plan = move |_: &mut Work| Ok(scene::plan(&point.scenario, speed.as_deref())?);
+    let plan = move |_: &mut Work| Ok(analysis::plan(&point.scenario, speed.as_deref())?);
     let (plan, _memory): (Plan, _) = place.run(plan).await?;
     Ok(tag.on(Json(plan).into_response()))
 }
@@ -106,7 +107,7 @@ pub(crate) async fn modes(
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let modes = move |_: &mut Work| Ok(scene::modes_up_to(&point.scenario, to_hz)?);
+    let modes = move |_: &mut Work| Ok(analysis::modes_up_to(&point.scenario, to_hz)?);
     let (modes, _memory): (Modes, _) = place.run(modes).await?;
     Ok(tag.on(Json(modes).into_response()))
 }

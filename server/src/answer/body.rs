@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::body::Body;
 use axum::response::Response;
@@ -10,9 +9,8 @@ use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 
 use crate::answer::blocking::beside;
-use crate::answer::chunk::{self, Chunk, room};
+use crate::answer::chunk::{self, Allowance, Chunk};
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::Eviction;
 use crate::answer::format::Answer;
 
 /// Bytes that are sent at once.
@@ -28,7 +26,7 @@ pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
 /// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
 pub(crate) async fn send(
     turns: Arc<Semaphore>,
-    eviction: Eviction,
+    allowance: Allowance,
     held: impl Send + 'static,
     prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
 ) -> Result<Response> {
@@ -38,7 +36,7 @@ pub(crate) async fn send(
     beside(move || {
         let _entered = span.enter();
         let _held = held;
-        let mut sink = Sink::new(sender, handle, Some(turns), eviction);
+        let mut sink = Sink::new(sender, handle, Some(turns), allowance);
         let answer = match prepare() {
             Ok(answer) => answer,
             Err(error) => return sink.fail(error),
@@ -69,7 +67,7 @@ pub(crate) struct Sink {
     /// Where turns to compute are had, and the one at hand.
     turns: Option<Arc<Semaphore>>,
     turn: Option<OwnedSemaphorePermit>,
-    eviction: Eviction,
+    allowance: Allowance,
     is_abandoned: bool,
 }
 
@@ -79,10 +77,10 @@ impl Sink {
         sender: mpsc::Sender<Result<Chunk>>,
         handle: Handle,
         turns: Option<Arc<Semaphore>>,
-        eviction: Eviction,
+        allowance: Allowance,
     ) -> Self {
         let mut sink =
-            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, eviction, is_abandoned: false };
+            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, allowance, is_abandoned: false };
         sink.take_turn();
         sink
     }
@@ -105,7 +103,7 @@ impl Sink {
         let _ = self.send(Err(error));
     }
 
-    /// Whether the client has gone away, takes nothing, or takes it so slowly that it was broken off for others.
+    /// True if the client has gone away or is too slow.
     pub(crate) fn is_abandoned(&self) -> bool {
         self.is_abandoned
     }
@@ -113,16 +111,16 @@ impl Sink {
     /// Others compute while this one waits for its client.
     fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
         self.turn = None;
-        let Some(room) = self.handle.block_on(room(&self.sender, &mut self.eviction)) else {
-            return Err(self.abandon());
+        let bytes = match &chunk {
+            Ok(Chunk::One(bytes) | Chunk::Last(bytes)) => bytes.len(),
+            Err(_) => 0,
+        };
+        let Some(room) = self.handle.block_on(self.allowance.room(&self.sender, bytes)) else {
+            self.is_abandoned = true;
+            return Err(io::ErrorKind::BrokenPipe.into());
         };
         room.send(chunk);
         Ok(())
-    }
-
-    fn abandon(&mut self) -> io::Error {
-        self.is_abandoned = true;
-        io::ErrorKind::BrokenPipe.into()
     }
 }
 
@@ -139,10 +137,6 @@ impl Write for Sink {
         if self.buffer.len() == CHUNK {
             let chunk = std::mem::take(&mut self.buffer);
             self.send(Ok(Chunk::One(chunk.into())))?;
-            // A client that takes each chunk within a moment may take all of them slowly.
-            if self.eviction.is_due(Duration::ZERO) {
-                return Err(self.abandon());
-            }
             self.take_turn();
         }
         Ok(count)

@@ -5,7 +5,6 @@ pub(crate) mod body;
 pub(crate) mod chunk;
 pub(crate) mod error;
 pub(crate) mod etag;
-pub(crate) mod eviction;
 pub(crate) mod extract;
 pub(crate) mod format;
 pub(crate) mod json;

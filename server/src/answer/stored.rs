@@ -13,9 +13,8 @@ use drillsweep_table::{Table, TableError};
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
-use crate::answer::chunk::{self, Chunk};
+use crate::answer::chunk::{self, Allowance, Chunk};
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::Eviction;
 use crate::answer::records;
 
 /// Bytes of a file that are read, verified and sent at once: what storage verifies as one.
@@ -140,20 +139,21 @@ impl Stored {
     pub(crate) async fn body<H: Send + 'static>(
         self,
         range: Range<u64>,
-        place: impl Future<Output = Result<(H, Eviction)>>,
+        place: impl Future<Output = Result<(H, Allowance)>>,
     ) -> Result<Body> {
         let mut stretches = Self::stretches(range).peekable();
         let Some(first) = stretches.next() else { return Ok(Body::empty()) };
         if stretches.peek().is_none() {
             return Ok(self.range(first).await?.into());
         }
-        let (held, mut eviction) = place.await?;
+        let (held, mut allowance) = place.await?;
         let first = Chunk::One(self.range(first).await?);
         let (sender, receiver) = mpsc::channel(1);
         tokio::spawn(async move {
             let _held = held;
             while let Some(stretch) = stretches.next() {
-                let Some(room) = chunk::room(&sender, &mut eviction).await else { return };
+                let bytes = (stretch.end - stretch.start) as usize;
+                let Some(room) = allowance.room(&sender, bytes).await else { return };
                 let next = match self.range(stretch).await {
                     Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
                     Ok(bytes) => Ok(Chunk::One(bytes)),
@@ -161,7 +161,7 @@ impl Stored {
                 };
                 let is_broken = next.is_err();
                 room.send(next);
-                if is_broken || stretches.peek().is_some() && eviction.is_due(Duration::ZERO) {
+                if is_broken {
                     return;
                 }
             }

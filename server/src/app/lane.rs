@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use axum::response::Response;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
@@ -10,16 +10,16 @@ use tokio::time::timeout;
 
 use crate::answer::blocking::{beside, blocking};
 use crate::answer::body;
+use crate::answer::chunk::Allowance;
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::{Eviction, Queue};
 use crate::answer::format::Answer;
 use crate::app::metrics::Occupancy;
 
 /// How long a request waits for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The longest that a refused client is told to stay away; places may be free long before.
-const LONGEST_ADVICE: Duration = Duration::from_secs(60);
+/// Retry-After of a refused request.
+const ADVICE: Duration = Duration::from_secs(5);
 
 /// Memory, or places, for one kind of work. Requests that need none are not held up by those that do.
 pub(crate) struct Lane {
@@ -29,53 +29,20 @@ pub(crate) struct Lane {
     all_waiting: usize,
     refused: AtomicU64,
     turns: Arc<Semaphore>,
-    pace: Arc<Pace>,
-    queue: Arc<Queue>,
+    allowance: Duration,
 }
 
 /// Memory or a place, until it is dropped.
 pub(crate) struct Place {
-    held: Held,
+    permit: OwnedSemaphorePermit,
     turns: Arc<Semaphore>,
-    eviction: Eviction,
-}
-
-struct Held {
-    _permit: OwnedSemaphorePermit,
-    since: Instant,
-    pace: Arc<Pace>,
-}
-
-impl Drop for Held {
-    fn drop(&mut self) {
-        self.pace.note(self.since.elapsed());
-    }
-}
-
-/// How long work has lasted lately \[ms\], as a mean that forgets.
-#[derive(Default)]
-struct Pace(AtomicU64);
-
-impl Pace {
-    fn note(&self, lasted: Duration) {
-        /// The part of the latest in the mean is one of so many.
-        const MEMORY: u64 = 4;
-        let lasted = u64::try_from(lasted.as_millis()).unwrap_or(u64::MAX);
-        // One that is lost to another that ends at the same time changes no advice.
-        let mean = self.0.load(Ordering::Relaxed);
-        self.0.store(mean - mean / MEMORY + lasted / MEMORY, Ordering::Relaxed);
-    }
-
-    /// When a place is likely to be free again.
-    fn advice(&self) -> Duration {
-        Duration::from_millis(self.0.load(Ordering::Relaxed)).clamp(Duration::from_secs(1), LONGEST_ADVICE)
-    }
+    allowance: Duration,
 }
 
 impl Lane {
-    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; after
-    /// `grace` answers whose clients are slow are evicted for them.
-    pub(crate) fn new(units: usize, at_once: usize, waiting: usize, grace: Duration) -> Self {
+    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; a
+    /// client may keep its answer waiting for `allowance`.
+    pub(crate) fn new(units: usize, at_once: usize, waiting: usize, allowance: Duration) -> Self {
         Self {
             units: Arc::new(Semaphore::new(units)),
             all: units,
@@ -83,8 +50,7 @@ impl Lane {
             all_waiting: waiting,
             refused: AtomicU64::new(0),
             turns: Arc::new(Semaphore::new(at_once.max(1))),
-            pace: Arc::default(),
-            queue: Queue::new(grace),
+            allowance,
         }
     }
 
@@ -102,10 +68,9 @@ impl Lane {
         let too_many = || {
             self.refused.fetch_add(1, Ordering::Relaxed);
             let reason = "more large answers are asked for than can be computed at once";
-            Error::unavailable_for(reason, self.pace.advice())
+            Error::unavailable_for(reason, ADVICE)
         };
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
-        let _queued = self.queue.wait();
         match timeout(PATIENCE, self.units.clone().acquire_many_owned(self.bounded(units))).await {
             Ok(Ok(permit)) => Ok(self.place(permit)),
             // The semaphore is never closed.
@@ -127,11 +92,7 @@ impl Lane {
     }
 
     fn place(&self, permit: OwnedSemaphorePermit) -> Place {
-        Place {
-            held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
-            turns: self.turns.clone(),
-            eviction: Eviction::of(&self.queue),
-        }
+        Place { permit, turns: self.turns.clone(), allowance: self.allowance }
     }
 }
 
@@ -170,12 +131,12 @@ impl Place {
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
-        body::send(self.turns, self.eviction, self.held, prepare).await
+        body::send(self.turns, Allowance::new(self.allowance), self.permit, prepare).await
     }
 
-    /// Guard that holds the place, and its eviction, for a body that is written otherwise.
-    pub(crate) fn into_parts(self) -> (impl Send + 'static, Eviction) {
-        (self.held, self.eviction)
+    /// Guard that holds the place, and allowance of its client, for a body that is written otherwise.
+    pub(crate) fn into_parts(self) -> (impl Send + 'static, Allowance) {
+        (self.permit, Allowance::new(self.allowance))
     }
 }
 
@@ -183,11 +144,11 @@ impl Place {
 mod tests {
     use super::*;
 
-    const GRACE: Duration = Duration::from_secs(10);
+    const ALLOWANCE: Duration = Duration::from_secs(10);
 
     #[tokio::test]
     async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
-        let lane = Arc::new(Lane::new(1, 1, 1, GRACE));
+        let lane = Arc::new(Lane::new(1, 1, 1, ALLOWANCE));
         let first = lane.enter(1).await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
             let lane = lane.clone();
@@ -206,7 +167,7 @@ mod tests {
 
     #[tokio::test]
     async fn work_takes_what_it_needs_and_at_most_all_there_is() {
-        let lane = Lane::new(10, 1, 0, GRACE);
+        let lane = Lane::new(10, 1, 0, ALLOWANCE);
         let small = lane.enter(3).await.map_err(Error::into_problem).expect("there is room");
         let other = lane.enter(7).await.map_err(Error::into_problem).expect("there is just room");
         assert!(lane.enter(1).await.is_err());
@@ -215,21 +176,5 @@ mod tests {
         assert!(lane.enter(1).await.is_err());
         drop(all);
         assert_eq!(lane.units.available_permits(), 10);
-    }
-
-    #[test]
-    fn who_is_refused_is_told_to_come_back_when_work_of_late_would_have_ended() {
-        let pace = Pace::default();
-        assert_eq!(pace.advice(), Duration::from_secs(1), "before anything has ended");
-        for _ in 0..40 {
-            pace.note(Duration::from_secs(11));
-        }
-        assert_eq!(pace.advice().as_secs_f64().round(), 11.0);
-        pace.note(Duration::from_secs(7_000));
-        assert_eq!(pace.advice(), LONGEST_ADVICE);
-        for _ in 0..80 {
-            pace.note(Duration::from_millis(20));
-        }
-        assert_eq!(pace.advice(), Duration::from_secs(1), "as it was before");
     }
 }

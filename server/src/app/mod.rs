@@ -20,8 +20,8 @@ use drillsweep_store::Store;
 use tokio::sync::watch;
 
 use crate::answer::body::MEMORY_OF_BODY;
+use crate::answer::chunk::Allowance;
 use crate::answer::error::Result;
-use crate::answer::eviction::Eviction;
 use crate::answer::format::{Answer, Format};
 use crate::answer::need::Need;
 use crate::answer::stored::MEMORY_OF_FILE;
@@ -67,8 +67,8 @@ pub struct Config {
     pub large_answer_bytes: usize,
     /// Requests for them that may wait; those beyond are told to come back.
     pub large_answers_waiting: usize,
-    /// How long a request for one waits before answers whose clients take them slowly are broken off to make room.
-    pub large_answer_grace: Duration,
+    /// Time that a client may keep a large answer waiting, which is renewed at 32 kB/s; slower clients are broken off.
+    pub large_answer_allowance: Duration,
 }
 
 impl Default for Config {
@@ -91,7 +91,7 @@ impl Default for Config {
             large_answers: cores,
             large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
-            large_answer_grace: Duration::from_secs(10),
+            large_answer_allowance: Duration::from_secs(30),
         }
     }
 }
@@ -129,8 +129,8 @@ pub(crate) struct App {
 impl App {
     pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
         let lane = |units| {
-            let grace = config.large_answer_grace;
-            Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, grace))
+            let allowance = config.large_answer_allowance;
+            Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, allowance))
         };
         let metrics = Metrics::new(&store);
         let strangers = Strangers::new(metrics.refused_tokens.clone());
@@ -194,8 +194,8 @@ impl App {
         self.pictures.get_or_draw(key, draw).await
     }
 
-    /// Takes the memory for a file that is sent as it is stored, with when it is evicted.
-    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Eviction)> {
+    /// Takes the memory for a file that is sent as it is stored.
+    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Allowance)> {
         Ok(self.files.enter(kibibytes(MEMORY_OF_FILE)).await?.into_parts())
     }
 }

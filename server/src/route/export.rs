@@ -67,13 +67,13 @@ pub(crate) async fn export(
     // Before there is an answer, which could only break off where there is no memory for the table.
     let memory = app.view(memory_of_points(&app, &id, sweep.counts.total).await?).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
-    let (held, eviction) = app.file().await?;
+    let (held, allowance) = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
     let archive =
         Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
     beside(move || {
         let _held = held;
-        let mut sink = Sink::new(sender, archive.handle.clone(), None, eviction);
+        let mut sink = Sink::new(sender, archive.handle.clone(), None, allowance);
         match archive.write(&mut sink, &sweep, memory) {
             Ok(()) => sink.finish(),
             // A client that has gone away needs no word in the log.

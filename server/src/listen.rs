@@ -1,4 +1,4 @@
-//! Connections: how many there may be, how long they may take to say what they want, and to take what they get.
+//! Connections: limits on their number, and timeouts.
 
 use std::io;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
@@ -23,10 +23,10 @@ use tokio::sync::Notify;
 use tokio::time::Sleep;
 use tower::ServiceExt as _;
 
-/// Wait after the system had no room for a connection, as when it has no file descriptors left.
+/// Pause after a failed accept, as when no file descriptors are left.
 const NO_ROOM: Duration = Duration::from_millis(100);
 
-/// How many connections there may be, and how long they may take.
+/// Limits on the number of connections, and timeouts.
 #[derive(Debug, Clone)]
 pub struct ConnectionLimits {
     /// Connections at once for requests of all kinds. Beyond them a new connection replaces the oldest one without a request yet.
@@ -40,8 +40,8 @@ pub struct ConnectionLimits {
     pub headers: Duration,
     /// Time from a request's headers to the last byte of its body.
     pub body: Duration,
-    /// Time in which a client that is being answered must take something. Event streams and long polls that have nothing to send are
-    /// not cut off by it.
+    /// Time in which a client has to take something of an answer that is ready. Event streams and long polls with nothing to send are not
+    /// affected.
     pub write: Duration,
 }
 
@@ -58,20 +58,20 @@ impl Default for ConnectionLimits {
     }
 }
 
-/// Marks the requests of connections in the reserve.
+/// Marker of requests on connections in the reserve.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InReserve;
 
-/// From where a request comes: a client's address, or that of a proxy before the server.
+/// Address of the client, or of a proxy before the server.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peer(pub(crate) SocketAddr);
 
-/// Numbers of connections.
+/// Counts of connections.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ConnectionCounts {
-    /// Open ones.
+    /// Open connections.
     pub(crate) open: Gauge,
-    /// Those closed at once, since the start.
+    /// Connections refused since the start.
     pub(crate) refused: Counter,
 }
 
@@ -139,7 +139,7 @@ pub(crate) async fn serve_connections(
 /// Open connections, within the limits on their number.
 struct Places {
     limits: ConnectionLimits,
-    /// In the order in which they came.
+    /// In order of arrival.
     open: Mutex<Vec<Arc<Connection>>>,
     number: Gauge,
 }
@@ -147,7 +147,7 @@ struct Places {
 /// An open connection.
 struct Connection {
     address: IpAddr,
-    /// It came when all others had requested something, and may make light requests only.
+    /// True for connections beyond [`ConnectionLimits::total`], which may make light requests only.
     is_in_reserve: bool,
     has_requested: AtomicBool,
     /// Another connection has taken the place of this one.
@@ -211,7 +211,7 @@ impl Drop for Place {
     }
 }
 
-/// Network that counts as one address: an address of IPv4, a /64 of IPv6, which is what one customer gets at least.
+/// Network that counts as one address: an IPv4 address, or an IPv6 /64, the least that a customer gets.
 pub(crate) fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {
@@ -225,7 +225,7 @@ pub(crate) fn network(address: IpAddr) -> IpAddr {
 struct Patient {
     stream: TcpStream,
     patience: Duration,
-    /// Until when the client has to take something that waits for it.
+    /// Deadline of the client for the pending write.
     waiting: Option<Pin<Box<Sleep>>>,
 }
 

@@ -1,4 +1,4 @@
-//! All routes, in the order in which a newcomer should read them.
+//! All routes, in the order in which to read them.
 
 use std::io::Read as _;
 use std::sync::LazyLock;
@@ -22,7 +22,7 @@ use crate::route::{
     snapshots, spectrogram, statistics, status, sweeps, verification, web,
 };
 
-/// The OpenAPI 3.1 document of the service, as it is served. The program holds it compressed: it has a tenth of the size, and is seldom read.
+/// The OpenAPI 3.1 document of the service, embedded compressed, at a tenth of its size.
 pub static OPENAPI_JSON: LazyLock<String> = LazyLock::new(|| {
     let compressed: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json.gz"));
     let mut document = String::new();
@@ -30,7 +30,7 @@ pub static OPENAPI_JSON: LazyLock<String> = LazyLock::new(|| {
     document
 });
 
-/// The service without the network. `stopping` ends long polls when it turns true.
+/// The service without the network. Long polls and event streams end when `stopping` is true.
 pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
     routes(&App::new(store, config, stopping))
 }
@@ -45,8 +45,7 @@ pub(crate) fn routes(app: &App) -> Router {
     middleware::wrap(routes, app)
 }
 
-/// Every route for programs, and what answers which methods there: those of the OpenAPI document, which is made of the annotations of
-/// the same functions.
+/// Routes for programs with their handlers: those of the OpenAPI document, which is made from annotations of the same functions.
 fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
     vec![
         ("/v1/sweeps", post(sweeps::submit::create).get(sweeps::list::list)),
@@ -97,7 +96,7 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
     ]
 }
 
-/// Pages for people, and what they load: no part of what programs talk to.
+/// Pages and their files, which are not in the OpenAPI document.
 fn for_people() -> Router<App> {
     Router::new()
         .route("/", get(web::page))
@@ -142,7 +141,7 @@ mod tests {
 
     use super::*;
 
-    /// The methods and paths of the document.
+    /// Methods and paths of the document.
     fn documented() -> BTreeSet<String> {
         let document: Value = serde_json::from_str(&OPENAPI_JSON).expect("JSON");
         let paths = document["paths"].as_object().expect("paths").iter();
@@ -163,13 +162,13 @@ mod tests {
         let service = router(store, Config::default(), stopping);
         let mut routed = BTreeSet::new();
         for (path, _) in for_programs() {
-            // No route takes it, so that the answer says which methods there are.
+            // No route has this method, so that the answer lists the methods that exist.
             let uri = path.replace(['{', '}'], "");
             let request = Request::builder().method(Method::TRACE).uri(uri).body(Body::empty());
             let answer = service.clone().oneshot(request.expect("a request")).await.expect("an answer");
             assert_eq!(answer.status(), StatusCode::METHOD_NOT_ALLOWED, "{path}");
             let allowed = answer.headers()[header::ALLOW].to_str().expect("text");
-            // Whoever answers GET answers HEAD, which the document leaves unsaid.
+            // Routes with GET have HEAD, which the document does not list.
             let methods = allowed.split(',').filter(|method| *method != "HEAD");
             routed.extend(methods.map(|method| format!("{method} {path}")));
         }

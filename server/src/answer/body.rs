@@ -1,4 +1,4 @@
-//! Bodies that are written while they are sent: by a thread that waits for the client, so that only chunks are in memory.
+//! Bodies that are written while they are sent, by a thread that waits for the client, so that only chunks are in memory.
 
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -13,17 +13,17 @@ use crate::answer::chunk::{self, Allowance, Chunk};
 use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
 
-/// Bytes that are sent at once.
+/// Size of a chunk \[bytes\].
 const CHUNK: usize = 64 << 10;
 
-/// Chunks that may wait for the client; then the writing waits.
+/// Chunks that may wait for the client before the writer waits.
 pub(crate) const WAITING_CHUNKS: usize = 2;
 
-/// Bytes of memory that a body takes on its way.
+/// Memory of a body while it is sent \[bytes\].
 pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
 
-/// Writes an answer in a thread of its own, which computes when it is its turn and has `held` until it ends. What fails before the
-/// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
+/// Writes an answer on a separate thread, which holds a turn while it computes and `held` until it ends. An error before the first chunk is
+/// full becomes a problem, an answer of one chunk has a length, and a later error breaks off the body.
 pub(crate) async fn send(
     turns: Arc<Semaphore>,
     allowance: Allowance,
@@ -41,7 +41,7 @@ pub(crate) async fn send(
             Ok(answer) => answer,
             Err(error) => return sink.fail(error),
         };
-        // Nobody listens any more where the request has ended.
+        // An error means that the request has ended.
         let _ = head.send(answer.head());
         let written = answer.write(&mut sink);
         match written {
@@ -64,7 +64,7 @@ pub(crate) struct Sink {
     sender: mpsc::Sender<Result<Chunk>>,
     buffer: Vec<u8>,
     handle: Handle,
-    /// Where turns to compute are had, and the one at hand.
+    /// Source of turns to compute, and the turn that is held.
     turns: Option<Arc<Semaphore>>,
     turn: Option<OwnedSemaphorePermit>,
     allowance: Allowance,
@@ -72,7 +72,7 @@ pub(crate) struct Sink {
 }
 
 impl Sink {
-    /// A sink for a thread that computes when it is its turn; without `turns` whenever it likes.
+    /// A sink for a thread that computes in turns, or at any time without `turns`.
     pub(crate) fn new(
         sender: mpsc::Sender<Result<Chunk>>,
         handle: Handle,
@@ -92,7 +92,7 @@ impl Sink {
         }
     }
 
-    /// Sends what is left, as the end of the body.
+    /// Sends the rest of the buffer as the end of the body.
     pub(crate) fn finish(mut self) {
         let bytes = std::mem::take(&mut self.buffer);
         let _ = self.send(Ok(Chunk::Last(bytes.into())));
@@ -108,7 +108,7 @@ impl Sink {
         self.is_abandoned
     }
 
-    /// Others compute while this one waits for its client.
+    /// Sends a chunk; the turn is free while this thread waits for its client.
     fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
         self.turn = None;
         let bytes = match &chunk {
@@ -127,10 +127,10 @@ impl Sink {
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.is_abandoned {
-            // The one who writes has been told; an archive that is dropped then writes its end, which goes nowhere.
+            // The writer got an error before; a dropped archive still writes its directory, which is discarded.
             return Ok(bytes.len());
         }
-        // At once in full: a buffer that grows would leave holes of all sizes in memory.
+        // Reserved in full: a growing buffer fragments the heap.
         self.buffer.reserve_exact(CHUNK - self.buffer.len());
         let count = bytes.len().min(CHUNK - self.buffer.len());
         self.buffer.extend_from_slice(&bytes[..count]);

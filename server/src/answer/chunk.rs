@@ -1,4 +1,4 @@
-//! Parts of bodies that are made while they are sent, as the client takes them.
+//! Chunks of bodies that are made while they are sent, at the pace of the client.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -13,13 +13,13 @@ use crate::answer::error::{Error, Result};
 /// Least mean rate at which clients have to take answers that hold memory \[bytes/s\].
 const LEAST_RATE: f64 = 32e3;
 
-/// A part of a body.
+/// A chunk of a body.
 pub(crate) enum Chunk {
     One(Bytes),
     Last(Bytes),
 }
 
-/// A body of chunks: `first`, and those that come. One that ends without its last breaks off.
+/// A body of `first` and the chunks received after it. It breaks off if they end without a last one.
 pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>) -> Body {
     let chunks = futures::stream::unfold(Some((first, receiver)), async |state| {
         let (first, mut receiver) = state?;
@@ -34,7 +34,7 @@ pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>
             None => (Err(io::ErrorKind::UnexpectedEof.into()), None),
         })
     });
-    // Compression polls a stream beyond its end.
+    // Compression polls a stream after its end.
     Body::from_stream(chunks.fuse())
 }
 

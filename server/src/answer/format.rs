@@ -1,4 +1,4 @@
-//! Which format a table is served in, and how.
+//! Formats of tables: choice and writing.
 
 use std::io;
 
@@ -15,7 +15,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::etag::Tag;
 use crate::answer::stored::{Stored, StoredFile};
 
-/// The formats in which tables are served.
+/// Formats in which tables are served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -30,7 +30,7 @@ pub(crate) enum TableFormat {
     Npz,
 }
 
-/// The formats in which tables are served that can be shown as a picture.
+/// Formats of tables that can also be drawn as pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -43,9 +43,9 @@ pub(crate) enum PictureFormat {
     Parquet,
     /// NumPy's archive of arrays.
     Npz,
-    /// A picture, as a drawing.
+    /// A picture as SVG.
     Svg,
-    /// A picture, as pixels.
+    /// A picture as PNG.
     Png,
 }
 
@@ -62,7 +62,7 @@ pub(crate) enum Format {
 
 /// Format that a query may request.
 pub(crate) trait Asked: Into<Format> {
-    /// All formats that it may request; on a tie `Accept` takes what comes first.
+    /// All formats that the query may request; on a tie of `Accept` the first one wins.
     const OFFERED: &'static [Format];
 }
 
@@ -100,7 +100,7 @@ impl From<PictureFormat> for Format {
 }
 
 impl Format {
-    /// The media type that the format is served as.
+    /// Media type of the format.
     pub(crate) fn media_type(self) -> &'static str {
         match self {
             Format::Json => "application/json",
@@ -123,8 +123,8 @@ impl Format {
         }
     }
 
-    /// Bytes of memory that it takes to write what takes so many to be read. A Parquet file's footer, with its statistics, is larger
-    /// on the way out.
+    /// Memory for writing a table in this format \[bytes\], from that for reading it. The footer of Parquet, with its statistics, is larger
+    /// in writing.
     pub(crate) fn memory(self, reading: u64) -> u64 {
         if self == Format::Parquet { 3 * reading + parquet::MEMORY_OF_WRITER } else { reading }
     }
@@ -186,7 +186,7 @@ fn best(accept: &str, offered: &[Format]) -> Option<Format> {
     chosen
 }
 
-/// Answer to serve, as a file for those who save it.
+/// A table or picture to serve, with a file name.
 pub(crate) struct Answer {
     head: Head,
     content: Content,
@@ -199,8 +199,8 @@ enum Content {
 }
 
 impl Answer {
-    /// A table in memory, or its columns `fields`, in a format that is no picture. Its tag, where that is not known before, is that of
-    /// what it holds, which takes as long as writing it.
+    /// A table in memory, or its columns `fields`, in a format other than a picture. Without a known tag, its contents are hashed, which
+    /// takes as long as writing them.
     pub(crate) fn of_table(
         table: Table,
         fields: Option<&[String]>,
@@ -220,7 +220,7 @@ impl Answer {
         Ok(Self { head: Head::new(format, name, tag), content: Content::Table(table) })
     }
 
-    /// The same; a picture is drawn by `draw` from the whole table.
+    /// A table in memory, or a picture that `draw` makes from all of it.
     pub(crate) fn of_table_or_picture(
         table: Table,
         fields: Option<&[String]>,
@@ -238,7 +238,7 @@ impl Answer {
         Ok(Self { head: Head::new(format, name, tag), content: Content::Picture(picture) })
     }
 
-    /// A part of a stored table, in a format that is no picture.
+    /// A part of a stored table, in a format other than a picture.
     pub(crate) fn of_part(
         stored: Stored,
         part: Cut<StoredFile>,
@@ -260,14 +260,14 @@ impl Answer {
         }
     }
 
-    /// A picture of these bytes, for tests of what keeps pictures.
+    /// A picture of these bytes, for tests of the cache of pictures.
     #[cfg(test)]
     pub(crate) fn of_bytes(bytes: &str) -> Self {
         let head = Head::new(Format::Svg, "test", Tag::of(Format::Svg, &bytes));
         Self { head, content: Content::Picture(bytes.as_bytes().to_vec()) }
     }
 
-    /// Head that goes before the body.
+    /// Head of the body.
     pub(crate) fn head(&self) -> Head {
         self.head.clone()
     }
@@ -290,7 +290,7 @@ impl Answer {
     }
 }
 
-/// The columns of a table that are asked for.
+/// The requested columns of a table.
 pub(crate) fn select(table: Table, fields: Option<&[String]>) -> Result<Table> {
     let Some(fields) = fields else { return Ok(table) };
     let selected = table.select(fields);
@@ -309,7 +309,7 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
     }
 }
 
-/// Head of a body: format, name for those who save it, and tag.
+/// Head of a body: format, file name, and tag.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
     format: Format,

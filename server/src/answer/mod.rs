@@ -1,4 +1,4 @@
-//! Extraction of requests and making of answers, for routes and guards.
+//! Extraction of requests and creation of answers, for routes and guards.
 
 pub(crate) mod blocking;
 pub(crate) mod body;

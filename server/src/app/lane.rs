@@ -1,4 +1,4 @@
-//! Work that takes cores and memory for a while: as much at once as there is, some more that waits, and what is beyond told to come back.
+//! Admission control for large answers: weighted semaphores of memory, with a bounded queue.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,13 +15,13 @@ use crate::answer::error::{Error, Result};
 use crate::answer::format::Answer;
 use crate::app::metrics::Occupancy;
 
-/// How long a request waits for its turn.
+/// Longest wait of a request for its place.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Retry-After of a refused request.
 const ADVICE: Duration = Duration::from_secs(5);
 
-/// Memory, or places, for one kind of work. Requests that need none are not held up by those that do.
+/// A weighted semaphore for one kind of work.
 pub(crate) struct Lane {
     units: Arc<Semaphore>,
     all: usize,
@@ -32,7 +32,7 @@ pub(crate) struct Lane {
     allowance: Duration,
 }
 
-/// Memory or a place, until it is dropped.
+/// Units of a lane, held until this is dropped.
 pub(crate) struct Place {
     permit: OwnedSemaphorePermit,
     turns: Arc<Semaphore>,
@@ -40,8 +40,8 @@ pub(crate) struct Place {
 }
 
 impl Lane {
-    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; a
-    /// client may keep its answer waiting for `allowance`.
+    /// A lane of `units`, with `at_once` threads that compute and at most `waiting` requests in the queue. A client may keep its answer
+    /// waiting for `allowance`.
     pub(crate) fn new(units: usize, at_once: usize, waiting: usize, allowance: Duration) -> Self {
         Self {
             units: Arc::new(Semaphore::new(units)),
@@ -54,20 +54,20 @@ impl Lane {
         }
     }
 
-    /// Takes so many units, or where there are fewer all of them, if they are free and nobody waits for them.
+    /// Takes units, or all if there are fewer, if they are free and no request waits for them.
     pub(crate) fn try_enter(&self, units: usize) -> Option<Place> {
         let permit = self.units.clone().try_acquire_many_owned(self.bounded(units)).ok()?;
         Some(self.place(permit))
     }
 
-    /// Takes so many units, or where there are fewer all of them, in the order of arrival. To be taken before anything large is loaded.
+    /// Takes units, or all if there are fewer, in order of arrival. Call it before loading anything large.
     pub(crate) async fn enter(&self, units: usize) -> Result<Place> {
         if let Some(place) = self.try_enter(units) {
             return Ok(place);
         }
         let too_many = || {
             self.refused.fetch_add(1, Ordering::Relaxed);
-            let reason = "more large answers are asked for than can be computed at once";
+            let reason = "more large answers are requested than can be computed at once";
             Error::unavailable_for(reason, ADVICE)
         };
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
@@ -78,7 +78,7 @@ impl Lane {
         }
     }
 
-    /// Counts for the metrics, of units of `bytes` each.
+    /// Counts for the metrics; a unit has `bytes`.
     pub(crate) fn measure(&self, bytes: usize) -> Occupancy {
         Occupancy {
             held: (self.all.saturating_sub(self.units.available_permits()) * bytes) as u64,
@@ -97,12 +97,12 @@ impl Lane {
 }
 
 impl Place {
-    /// Runs the work on a thread of its own and gives the place back.
+    /// Runs work on a separate thread and gives the place back.
     pub(crate) async fn run<T: Send + 'static>(
         self,
         work: impl FnOnce() -> Result<T> + Send + 'static,
     ) -> Result<T> {
-        // Also where nobody waits for the answer any more: the work goes on to its end, and has its place until then.
+        // The work continues to its end after its client has left, and holds its place until then.
         blocking(move || {
             let _place = self;
             work()
@@ -110,7 +110,7 @@ impl Place {
         .await
     }
 
-    /// Makes an answer on a thread of its own when it is its turn, and gives the place back.
+    /// Makes an answer on a separate thread in its turn, and gives the place back.
     pub(crate) async fn make(
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
@@ -120,13 +120,13 @@ impl Place {
         let (sender, receiver) = oneshot::channel();
         beside(move || {
             let _held = (self, turn);
-            // A client that has left needs no answer.
+            // An error means that the client has left.
             let _ = sender.send(prepare());
         })?;
         receiver.await.map_err(|_| Error::internal("the thread that makes an answer has ended"))?
     }
 
-    /// Writes an answer on a thread of its own while it is sent, and gives the place back at its end.
+    /// Writes an answer on a separate thread while it is sent, and gives the place back at its end.
     pub(crate) async fn answer(
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,

@@ -1,5 +1,4 @@
-//! The OpenAPI document, out of the annotations of routes and types. What is served is the committed document; that both are the same is
-//! for tests to see.
+//! The OpenAPI document from the annotations of routes and types. The served document is the committed one, which a test compares.
 
 pub(crate) mod answers;
 mod vocabulary;
@@ -15,7 +14,7 @@ use crate::route::{
     snapshots, spectrogram, statistics, status, sweeps, verification,
 };
 
-/// The document as it is committed: indented JSON with a final newline.
+/// Text of the committed document: indented JSON with a final newline.
 pub fn openapi_of_annotations() -> String {
     let mut document = json!(Document::openapi());
     vocabulary::describe(&mut document);
@@ -23,7 +22,7 @@ pub fn openapi_of_annotations() -> String {
     format!("{document:#}\n")
 }
 
-/// Adds the largest numbers of members, which annotations do not have.
+/// Adds limits on numbers of members, which annotations cannot express.
 fn bound_members(document: &mut Value) {
     for request in ["SweepRequest", "RunRequest", "AppendRequest"] {
         let members = &mut document["components"]["schemas"][request]["properties"];
@@ -38,7 +37,7 @@ fn bound_members(document: &mut Value) {
     }
 }
 
-/// Description of the service as a whole in the document, and the routes and types whose annotations it is made of.
+/// The document: the service as a whole, and its annotated routes and types.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -113,7 +112,7 @@ fn bound_members(document: &mut Value) {
 )]
 struct Document;
 
-/// Says what a token is; the alternative without one holds until the first token exists.
+/// Adds the scheme of tokens; the alternative without one holds until the first token exists.
 struct TokenSecurity;
 
 impl Modify for TokenSecurity {

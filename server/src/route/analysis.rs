@@ -1,5 +1,5 @@
-//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, as dry runs do, and take their turn
-//! with these.
+//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, and take places for expansions, as dry runs
+//! do.
 
 use axum::Extension;
 use axum::extract::State;
@@ -27,8 +27,8 @@ pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
 
 /// Plan of a point's scenario
 ///
-/// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
-/// the equilibrium shows.
+/// As in a dry run: effects with their decisions and reasons, mesh, steps and processor times at each accuracy, and findings about the
+/// equilibrium.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -37,7 +37,7 @@ pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
         tag = "points",
         operation_id = "get_plan",
         params(PointPath, Conditional),
-        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is right"), Problems)
+        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is current"), Problems)
     )
 )]
 pub(crate) async fn plan(
@@ -58,7 +58,7 @@ pub(crate) async fn plan(
     Ok(tag.on(Json(plan).into_response()))
 }
 
-/// Which modes are wanted.
+/// Query of the modes.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -79,10 +79,10 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     range.ok_or_else(|| serde::de::Error::custom(detail()))
 }
 
-/// The modes of vibration of a point about its equilibrium
+/// Modes of vibration of a point about its equilibrium
 ///
-/// Frequencies, growth, what moves most and where: of the equations of motion linearised about the equilibrium, its contacts closed and
-/// sliding. They say where lines of a spectrum may come from; the motion of a run, which lifts off and sticks, need not keep to them.
+/// Frequencies, growth, and the largest motion with its place, from the equations of motion linearised about the equilibrium, its contacts
+/// closed and sliding. They are candidates for spectral lines; a run, in which contacts lift off and stick, may deviate from them.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -91,7 +91,7 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
         tag = "points",
         operation_id = "get_modes",
         params(PointPath, ModesQuery, Conditional),
-        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is right"), Problems)
+        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is current"), Problems)
     )
 )]
 pub(crate) async fn modes(

@@ -1,4 +1,4 @@
-//! The routes, a file for each thing that is asked about.
+//! Routes, a file for each resource.
 
 pub(crate) mod analysis;
 pub(crate) mod cost;

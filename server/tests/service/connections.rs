@@ -215,7 +215,7 @@ async fn streams_and_long_polls_outlast_every_time_limit() {
 }
 
 #[tokio::test]
-async fn who_takes_nothing_of_an_answer_is_cut_off() {
+async fn a_client_that_takes_nothing_of_an_answer_is_cut_off() {
     let limits =
         ConnectionLimits { write: Duration::from_millis(200), total: 1, ..ConnectionLimits::default() };
     let service = Service::start(limits).await;

@@ -192,7 +192,7 @@ async fn change_if(bench: &Bench, path: &str, tag: &str, body: Value) -> Answer 
 }
 
 #[tokio::test]
-async fn who_changes_what_another_has_changed_is_told() {
+async fn a_change_of_an_outdated_revision_is_refused() {
     let bench = Bench::new().await;
     let id =
         bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}})).await;

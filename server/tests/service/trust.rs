@@ -140,7 +140,7 @@ async fn without_tokens_names_from_elsewhere_are_refused() {
 }
 
 #[tokio::test]
-async fn an_owner_who_asks_too_fast_is_told_when_to_come_back() {
+async fn an_owner_beyond_its_rate_gets_a_retry_after() {
     let one = NonZeroU32::new(1).unwrap();
     let limits =
         OwnerLimits { requests_per_second: one, request_burst: NonZeroU32::new(3).unwrap(), open_points: 2 };

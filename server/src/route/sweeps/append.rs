@@ -1,4 +1,4 @@
-//! Points that are added to a sweep.
+//! Addition of points to a sweep.
 
 use axum::Extension;
 use axum::extract::State;
@@ -20,9 +20,9 @@ use crate::route::sweeps::load;
 
 /// Add points to a sweep
 ///
-/// Points of the sweep's scenario with other values of its parameters, by any design; their numbers go on from its last
-/// point. Points that the sweep has already are skipped, so that a finer grid may be asked for as a whole, and the same
-/// request again changes nothing. Of the added points as many are verified as make up the `verify` of the whole sweep.
+/// Points of the sweep's scenario with other values of its parameters, in any design, numbered after its last point. Points that the sweep
+/// has already are skipped, so that a finer grid can be requested as a whole, and repeating a request changes nothing. Added points are
+/// verified until the whole sweep has its share `verify`.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -22,8 +22,8 @@ use crate::route::sweeps::load;
 
 /// Cancel a sweep
 ///
-/// Queued points are cancelled at once, running ones within a heartbeat of their worker, and so are the reference runs that
-/// verify some. What another sweep wants too goes on for that sweep. Cancelling again changes nothing.
+/// Queued points and reference runs are cancelled at once, running ones within a heartbeat of their worker. Points that another sweep
+/// shares continue for that sweep. Cancelling again changes nothing.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -41,7 +41,7 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
     Ok(Json(load(&app, &id).await?))
 }
 
-/// Retry the failed and cancelled points of a sweep, and reference runs that verify some
+/// Retry the failed and cancelled points and reference runs of a sweep
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -60,8 +60,8 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
 
 /// Pause a sweep
 ///
-/// Its queued points are not started any more, but for those that another sweep wants; running ones continue to their end.
-/// Pausing again changes nothing.
+/// Its queued points are not started any more, except for those that another sweep shares; running ones continue to their end. Pausing
+/// again changes nothing.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -78,7 +78,7 @@ pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Res
     Ok(Json(load(&app, &id).await?))
 }
 
-/// Let a paused sweep go on
+/// Resume a paused sweep
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -97,8 +97,8 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
 
 /// Change name, tags, priority, pin or expiry of a sweep
 ///
-/// Absent fields stay as they are. A new priority holds for the points that wait, too. With `If-Match` nothing is changed of a sweep that
-/// somebody else has changed meanwhile (412); that its points have gone on does not count.
+/// Absent fields remain. A new priority also applies to queued points. With `If-Match` a sweep that was changed meanwhile is not changed
+/// (412); progress of its points does not count.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -147,7 +147,7 @@ pub(crate) async fn change(
     }
 }
 
-/// The problem that a sweep's time is over before it is set.
+/// Problem of an expiry in the past.
 fn already_past(expires: Timestamp, now: Timestamp) -> Error {
     let problem = FieldProblem {
         pointer: Some("/expires".to_owned()),
@@ -158,20 +158,20 @@ fn already_past(expires: Timestamp, now: Timestamp) -> Error {
     ProblemDetails::invalid_request(vec![problem]).into()
 }
 
-/// Whether a deletion is meant.
+/// Query of a deletion.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DeleteQuery {
-    /// True answers with what would be deleted, and deletes nothing.
+    /// True returns the extent of the deletion, and deletes nothing.
     #[serde(default, deserialize_with = "value::truth")]
     dry_run: bool,
 }
 
 /// Delete a sweep
 ///
-/// Its points, events and requests are gone at once; results that no other sweep has go with the next collection, and so do their
-/// tables. A sweep that is pinned, or has points that are not final, is not deleted (409).
+/// Its points, events and requests are deleted at once, results that no other sweep has, and their tables, with the next garbage
+/// collection. A sweep that is pinned, or has points that are not final, is not deleted (409).
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -201,7 +201,7 @@ pub(crate) async fn delete(
         DeleteOutcome::Deleted { points, results, bytes } => {
             Ok(Json(SweepDeletion { dry_run, points, results, bytes }))
         }
-        DeleteOutcome::Pinned => refused(format!("sweep {id} is pinned; take the pin away first")),
+        DeleteOutcome::Pinned => refused(format!("sweep {id} is pinned; unpin it first")),
         DeleteOutcome::Unfinished => {
             refused(format!("sweep {id} has points that are not final; cancel it first, or wait for them"))
         }

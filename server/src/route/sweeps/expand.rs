@@ -17,10 +17,10 @@ const MEMORY_OF_POINT: usize = 700;
 /// Processor time of expanding a point: twice that of the slowest presets, whose meshes follow from the scenario.
 const TIME_OF_POINT: Duration = Duration::from_micros(300);
 
-/// Takes memory and processor time for all points of a request, next to what reading it takes \[bytes\].
+/// Takes memory and processor time for all points of a request, in addition to the memory for parsing it \[bytes\].
 ///
 /// # Errors
-/// The memory that the request takes, if so much is not free.
+/// The needed memory \[bytes\], if it is not free.
 pub(super) fn make_room(
     work: &mut Work,
     of_reading: usize,
@@ -35,8 +35,8 @@ pub(super) fn make_room(
     Ok(())
 }
 
-/// Reads a body and expands its request in a place for expansions. Where the place has less memory than the request turns out to take,
-/// `expand` returns how much, and all is done again in a place of that size.
+/// Parses a body and expands its request in a place for expansions. If the request needs more memory than the place has, `expand` returns
+/// the needed memory, and both are repeated in a place of that size.
 pub(super) async fn expand_body<R: DeserializeOwned, T: Send + 'static>(
     app: &App,
     caller: &Caller,

@@ -14,7 +14,7 @@ use crate::app::App;
 use crate::openapi::answers::{Conditional, Problems};
 use crate::route::waiting::note_waiting;
 
-/// Which sweeps are listed.
+/// Query of the list of sweeps.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -31,11 +31,11 @@ pub(crate) struct ListQuery {
     /// Only sweeps in this state.
     #[cfg_attr(feature = "openapi", param(inline))]
     state: Option<SweepState>,
-    /// Only sweeps with this text in their name, in whatever case.
+    /// Only sweeps with this text in their name, regardless of case.
     name: Option<String>,
     /// Only sweeps with this tag.
     tag: Option<String>,
-    /// Only sweeps whose identifier begins like this.
+    /// Only sweeps whose identifier has this prefix.
     id: Option<String>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct ListQuery {
         params(ListQuery, Conditional),
         responses(
             (status = 200, description = "A page of sweeps", body = SweepList, headers(("ETag" = String))),
-            (status = 304, description = "The copy is right"),
+            (status = 304, description = "The copy is current"),
             Problems
         )
     )
@@ -65,7 +65,7 @@ pub(crate) async fn list(
     if let Some(cursor) = query.cursor.as_deref().filter(|cursor| uuid::Uuid::parse_str(cursor).is_err()) {
         return Err(Error::parameter("cursor", Some(cursor), "must be `next` of the page before"));
     }
-    // One more than asked for shows whether there is a next page.
+    // One more than requested shows if there is a next page.
     let filter = SweepFilter {
         owner: query.owner.as_deref(),
         state: query.state.map(SweepState::as_str),

@@ -18,24 +18,24 @@ use crate::app::App;
 use crate::route::verification::Verified;
 use crate::route::waiting::note_waiting;
 
-/// How often a long poll looks for progress within points; workers report it every 20 s.
+/// Interval at which long polls and event streams look for progress within points, which workers report every 20 s.
 pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Requests by which points were added that an answer has: who adds them one by one has thousands, and is answered every time.
+/// Largest number of requests for additional points in an answer: clients that add points one by one have thousands.
 const APPENDED_SHOWN: i64 = 100;
 
-/// The sweep with its counts. What verifying its points has shown is left out: that takes their results to tell, too much for each
-/// look at a sweep that is followed.
+/// A sweep with its counts, without findings of its verification: they need the results of its points, too much for each step of a long
+/// poll.
 pub(crate) async fn load(app: &App, id: &str) -> Result<Sweep> {
     load_with(app, id, APPENDED_SHOWN).await
 }
 
-/// The sweep with what verifying its points has shown.
+/// A sweep with findings of its verification.
 async fn load_findings(app: &App, id: &str) -> Result<Sweep> {
     with_findings(app, load(app, id).await?).await
 }
 
-/// The sweep with all that was ever asked for, and all that it has shown.
+/// A sweep with all its requests, and findings of its verification.
 pub(crate) async fn load_whole(app: &App, id: &str) -> Result<Sweep> {
     with_findings(app, load_with(app, id, i64::MAX).await?).await
 }

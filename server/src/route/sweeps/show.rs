@@ -17,12 +17,12 @@ use crate::guard::caller::Caller;
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load, load_findings};
 
-/// Whether and for what a request waits.
+/// Query of a sweep.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ShowQuery {
-    /// Waits so long, at most 60 s, before it answers: `30s`, `500ms`, or seconds as a number.
+    /// Longest wait before the answer, at most 60 s: `30s`, `500ms`, or seconds as a number.
     #[serde(default, deserialize_with = "value::span")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "30s"))]
     wait: Option<Duration>,
@@ -46,8 +46,8 @@ pub(crate) enum Until {
 
 /// A sweep: its state, counts and progress
 ///
-/// With `wait` the answer is held back until something changes, so that a script needs no polling loop of
-/// its own. A sweep whose points are all final is answered at once.
+/// With `wait` the answer is held back until the sweep changes, so that a script needs no polling loop. A sweep whose points are all final
+/// is returned at once.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -97,7 +97,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
         tokio::select! {
             () = changes.wait(app.config.poll_interval) => {}
             () = tokio::time::sleep_until(deadline) => {}
-            // An error means that the service is gone.
+            // An error means that the service has ended.
             _ = stopping.wait_for(|stopping| *stopping) => break,
         }
         // The version shows new states cheaply; progress within a point does not raise it.

@@ -1,4 +1,4 @@
-//! Submission of sweeps and single runs, and their plans.
+//! Submission and dry runs of sweeps and single runs.
 
 use axum::Extension;
 use axum::extract::State;
@@ -31,15 +31,15 @@ use crate::route::sweeps::load;
 
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
-/// How a submission is meant.
+/// Query of a submission.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SubmitQuery {
-    /// True answers with the points that the request would become, and stores nothing.
+    /// True returns the points and the plan of the request, and stores nothing.
     #[serde(default, deserialize_with = "value::truth")]
     dry_run: bool,
-    /// Policy for points that were computed before, by anyone.
+    /// Policy for points that were computed before, for any owner.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", param(inline))]
     cache: Cache,
@@ -50,21 +50,20 @@ pub(crate) struct SubmitQuery {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Cache {
-    /// Their results are taken; the others are computed.
+    /// Known results are used; other points are computed.
     #[default]
     Reuse,
-    /// All points are recomputed, failed ones too. The old results stay until new ones replace them, for all sweeps of
-    /// the owner that have the points; these are running again meanwhile. Sweeps of other owners keep theirs.
+    /// All points are recomputed, including failed ones. Old results remain until new ones replace them, in all sweeps of the owner with
+    /// these points, which are running meanwhile. Sweeps of other owners keep theirs.
     Refresh,
-    /// Their results are taken, and nothing is computed: a sweep with points that nobody has computed yet is refused (409),
-    /// and the answer names them.
+    /// Known results are used, and nothing is computed: a sweep with points without a result is refused (409), with their numbers.
     Only,
 }
 
 /// Submit a sweep
 ///
-/// The points are the scenario at every combination of the axes' values, the first axis varying slowest.
-/// Everything that is wrong with the request or any of its points is reported at once.
+/// The points are the scenario at every combination of the axes' values, the first axis varying slowest. All errors of the request and its
+/// points are reported together.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -187,7 +186,7 @@ async fn submit<R: DeserializeOwned + Into<SweepRequest>>(
     Ok((StatusCode::CREATED, [(header::LOCATION, location)], owner, Tagged(sweep)).into_response())
 }
 
-/// The problem that a sweep which computes nothing has points without an outcome.
+/// Problem of points without a result in a submission with `cache=only`.
 fn not_computed(sweep: &NewSweep, points: &[i64], verifications: &[i64]) -> Error {
     const NAMED: usize = 20;
     let of = |what: &str, missing: &[i64], total: usize| {
@@ -246,20 +245,20 @@ async fn plan(app: &App, caller: &Caller, expansion: Expansion, cache: CachePoli
     Ok(place.run(plan).await?.0)
 }
 
-/// Hash that distinguishes two requests with the same key.
+/// Hash of a request, which distinguishes requests with the same key.
 fn request_hash(body: &[u8], cache: Cache) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     hasher.update(body);
     match cache {
         Cache::Reuse => {}
-        // No JSON text has such an end.
+        // No JSON text ends like this.
         Cache::Refresh => _ = hasher.update(b"\0refresh"),
         Cache::Only => _ = hasher.update(b"\0only"),
     }
     *hasher.finalize().as_bytes()
 }
 
-/// The key under which a submission may be repeated: a text of visible ASCII.
+/// Idempotency key of a submission: visible ASCII characters.
 fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>> {
     let Some(value) = headers.get(IDEMPOTENCY_KEY) else { return Ok(None) };
     let key = value.to_str().unwrap_or_default();

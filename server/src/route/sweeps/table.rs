@@ -24,7 +24,7 @@ use crate::app::App;
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
 use crate::route::verification::{Verified, memory_of_points};
 
-/// How the table of a sweep is served.
+/// Query of the table of a sweep.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -32,30 +32,30 @@ pub(crate) struct SweepTableQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[cfg_attr(feature = "openapi", param(inline))]
     format: Option<PictureFormat>,
-    /// Only these columns, separated by commas; of a picture, what it shows.
+    /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     fields: Option<Vec<String>>,
-    /// Of a map: how the values of its parameters are placed; absent means `even`.
+    /// For a map: placement of the values of its parameters; absent means `even`.
     #[cfg_attr(feature = "openapi", param(inline))]
     spacing: Option<MapSpacing>,
-    /// Of a picture: parameters that it holds, each with one of its values in the units of the table, separated by commas:
-    /// `mud.density:1200,operation.weight_on_bit:-50000`. Of the others a map is over the first two; further ones are held at the
-    /// first value that they have. The picture says at which.
+    /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas:
+    /// `mud.density:1200,operation.weight_on_bit:-50000`. A map spans the first two of the others; further ones are fixed at their first
+    /// value, which the picture states.
     #[serde(default, deserialize_with = "value::assignments")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     slice: Option<Vec<(String, f64)>>,
 }
 
-/// How a map places the values of a parameter.
+/// Placement of the values of a parameter on a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum MapSpacing {
-    /// At equal distances, whatever the values.
+    /// Equal distances, regardless of the values.
     #[default]
     Even,
-    /// As far apart as the values are.
+    /// Distances in proportion to the values.
     ToScale,
 }
 
@@ -70,11 +70,11 @@ impl From<MapSpacing> for chart::Spacing {
 
 /// One row a point: its parameters and the scalars of its result
 ///
-/// Points without a result have their row too, with empty fields; `state` and `error` say why. Points that the request's `verify`
-/// has chosen have the bias of each statistic against the reference, as `bias_orbit_radius_rms_49`; where biases exceed what the
-/// accuracy promises, the attribute `warnings` says so. A picture shows the columns in `fields` over the parameters that vary: lines
-/// over one of them, a map of the first column over two, with diamonds at verified points; with more, a slice. Words, such as `state`
-/// and `stable`, have a colour each. A column of a node is shown with its depth, where that is the same in all of the sweep.
+/// Points without a result have a row with empty fields, and `state` and `error` as the reason. Verified points have the bias of each
+/// statistic relative to the reference, such as `bias_orbit_radius_rms_49`; the attribute `warnings` reports biases beyond the promise of
+/// the accuracy. A picture shows the columns in `fields` over the parameters that vary: lines over one, a map of the first column over two,
+/// with diamonds at verified points; over more, a slice. Categorical columns, such as `state` and `stable`, have a colour for each value. A
+/// column of a node is shown with its depth, if that is the same in all of the sweep.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -96,7 +96,7 @@ pub(crate) async fn table(
     let spacing = spacing.unwrap_or_default();
     let slice = slice.unwrap_or_default();
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
-    // The version is raised with every change of a point, and of a run that verifies one.
+    // Every change of a point or a reference run raises the version.
     let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
     let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
@@ -111,7 +111,7 @@ pub(crate) async fn table(
     };
     let (runtime, store) = (Handle::current(), app.store.clone());
     app.answer(format, key.as_str(), memory, move || {
-        // A picture shows more than the columns that are asked for.
+        // A picture needs more than the requested columns.
         let table = match &fields {
             Some(fields) if !format.is_picture() => PointsTable::keeping(fields.iter().map(String::as_str)),
             _ => PointsTable::default(),
@@ -121,7 +121,7 @@ pub(crate) async fn table(
         if let Some(statics) = statics
             && !parameters.iter().any(|name| moves_nodes(name))
         {
-            // A picture without depths is better than none.
+            // Without depths the picture is still useful.
             view.places = recordings::depths(&statics, &nodes).unwrap_or_default();
         }
         let mut table = points.finish();
@@ -137,13 +137,13 @@ pub(crate) async fn table(
     .await
 }
 
-/// The nodes that columns are of by number.
+/// Nodes of columns with a node number.
 fn nodes_of(fields: &[String]) -> Vec<u32> {
     let node = |name: &String| u32::try_from(Name::parse(name)?.place?.node()?).ok();
     fields.iter().filter_map(node).collect()
 }
 
-/// The equilibrium of the first point that has a result and has kept it.
+/// Equilibrium of the first point that has a result, if it kept one.
 async fn statics_of_first(app: &App, id: &str) -> Result<Option<Stored>> {
     let first = app.store.points(id, &[WorkState::Done], 0, 1).await?;
     let ordinal = first.first().and_then(|point| u32::try_from(point.ordinal).ok());
@@ -153,15 +153,15 @@ async fn statics_of_first(app: &App, id: &str) -> Result<Option<Stored>> {
     }
 }
 
-/// Whether a node of one number may lie elsewhere where this parameter has another value: the mesh follows from the string and its wall.
+/// True if a parameter may move the nodes of the mesh, which follows from the string and its wall.
 fn moves_nodes(parameter: &str) -> bool {
     let of_what = parameter.split(['.', '[']).next();
     of_what.is_some_and(|of_what| ["string", "mesh", "contact"].contains(&of_what))
 }
 
-/// The columns of the table of a sweep, without their values
+/// Columns of the table of a sweep, without values
 ///
-/// In their order, with kinds and units: those of the points as they are now. What a name stands for says `GET /v1/quantities`.
+/// Columns in order, with kinds and units, of the present states of the points. `GET /v1/quantities` defines the names.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -19,11 +19,3 @@ pub struct PointEvent {
     /// Time of the event.
     pub at: Timestamp,
 }
-
-/// The data of an event `deleted`: a sweep is no longer there.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-pub struct DeletedSweep {
-    /// The sweep.
-    pub id: String,
-}

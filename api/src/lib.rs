@@ -6,6 +6,7 @@
 //!
 //! Everything here is pure: no clock, files, SQL or HTTP.
 
+pub mod analysis;
 pub mod axis;
 mod bounded;
 pub mod cost;
@@ -18,7 +19,6 @@ pub mod point;
 pub mod preset;
 pub mod problem;
 pub mod request;
-pub mod scene;
 pub mod service;
 pub mod sweep;
 pub mod time_span;
@@ -27,7 +27,7 @@ pub mod view;
 
 pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};
-pub use event::{DeletedSweep, PointEvent};
+pub use event::PointEvent;
 pub use expand::{
     Expansion, Interruption, PointKey, PointKeys, SweepPoint, UNINTERRUPTED, check_patch, expand,
     expand_added, key_text,

@@ -1,4 +1,4 @@
-//! Metrics as Prometheus text, on a listener of their own, with the figures of the process.
+//! Metrics as Prometheus text on a separate listener, with those of the process.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -37,7 +37,7 @@ impl Default for Exposition {
 }
 
 impl Exposition {
-    /// Metrics of the process and its build; others enter theirs in [`registry`](Self::registry).
+    /// Metrics of the process and its build; further ones are added to [`registry`](Self::registry).
     pub fn new() -> Self {
         let mut registry = Registry::default();
         let process = ProcessMetrics::default();
@@ -47,7 +47,7 @@ impl Exposition {
         build.get_or_create(&labels).set(1);
         registry.sub_registry_with_prefix("drillsweep").register(
             "build_info",
-            "Version of the program and of its numbers",
+            "Version of the program and of its physics",
             build,
         );
         Self { registry: Arc::new(Mutex::new(registry)), process: Arc::new(process) }
@@ -76,7 +76,7 @@ impl Exposition {
     }
 }
 
-/// `/metrics`, with the text of a function.
+/// Route `/metrics`, with the text of a function.
 pub(crate) fn router<F, T>(text: F) -> Router
 where
     F: Fn() -> T + Clone + Send + Sync + 'static,
@@ -102,7 +102,7 @@ struct BuildLabels {
     physics_version: u32,
 }
 
-/// The process, by the names that are usual for it.
+/// Metrics of the process, by their usual names.
 #[derive(Debug, Default)]
 struct ProcessMetrics {
     cpu: Counter<f64, AtomicU64>,
@@ -119,7 +119,7 @@ impl ProcessMetrics {
         registry.register_with_unit("start_time", "Start since the epoch", Unit::Seconds, self.start.clone());
     }
 
-    /// Reads the process's figures, on systems that show them.
+    /// Reads the metrics of the process, on systems that have them.
     fn read(&self) {
         let Ok(process) = procfs::process::Process::myself() else { return };
         if let Ok(stat) = process.stat() {

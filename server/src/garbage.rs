@@ -6,16 +6,16 @@ use tokio::time::MissedTickBehavior;
 
 use crate::app::App;
 
-/// How often it is looked whether a collection is due.
+/// Interval of checks for a due collection.
 const LOOK: Duration = Duration::from_secs(60);
 
-/// Deletes what need not be kept, time after time, until the service stops. The time is counted from the last collection, whoever made
-/// it; without one, from the service's first start, so that nothing is deleted before an operator has read what would be.
+/// Collects garbage at intervals until the service stops. The interval counts from the last collection of any process, or from the first
+/// start of a service, so that operators can read the dry run before anything is deleted.
 pub(crate) async fn collect_garbage(mut app: App) {
     let Some(interval) = app.config.retention.interval else { return };
     tracing::info!(
         every_hours = interval.as_secs_f64() / 3600.0,
-        "what has expired is deleted; GET /v1/retention tells the ages"
+        "expired data are deleted at this interval (ages: GET /v1/retention)"
     );
     let started = app.store.now_ms().await;
     let mut ticks = tokio::time::interval(LOOK.min(interval));
@@ -23,7 +23,7 @@ pub(crate) async fn collect_garbage(mut app: App) {
     loop {
         tokio::select! {
             _ = ticks.tick() => {}
-            // An error means that the service is gone.
+            // An error means that the service has ended.
             _ = app.stopping.wait_for(|stopping| *stopping) => return,
         }
         let last = match app.store.last_collection().await {

@@ -1,4 +1,4 @@
-//! The HTTP service: routes, formats and long polls over the store. It computes nothing but views of results.
+//! The HTTP service: routes, formats, long polls and event streams over the store. It computes views of results alone.
 //!
 //! [`serve`] runs it on a listener until asked to stop; [`router`] is the same without the network, for tests
 //! and for embedding; [`OPENAPI_JSON`] is the document that it serves.

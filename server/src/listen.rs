@@ -1,18 +1,15 @@
-//! Connections: how many there may be, how long they may take to say what they want, and to take what they get.
+//! Connections: limits on their number, and timeouts.
 
-use std::collections::{HashMap, VecDeque};
 use std::io;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 use std::pin::{Pin, pin};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll};
 use std::time::Duration;
 
 use axum::Router;
-use axum::http::{Request, StatusCode};
-use drillsweep_api::problem::PROBLEM_MEDIA_TYPE;
-use drillsweep_api::{ProblemDetails, ProblemKind};
+use axum::http::Request;
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -22,34 +19,29 @@ use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::gauge::Gauge;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
+use tokio::sync::Notify;
 use tokio::time::Sleep;
 use tower::ServiceExt as _;
 
-/// Wait after the system had no room for a connection, as when it has no file descriptors left.
+/// Pause after a failed accept, as when no file descriptors are left.
 const NO_ROOM: Duration = Duration::from_millis(100);
 
-/// How many connections there may be, and how long they may take.
+/// Limits on the number of connections, and timeouts.
 #[derive(Debug, Clone)]
 pub struct ConnectionLimits {
-    /// Connections at once that may ask for anything.
+    /// Connections at once for requests of all kinds. Beyond them a new connection replaces the oldest one without a request yet.
     pub total: usize,
-    /// Connections at once beyond these, for health checks and short questions about the service only.
+    /// Connections at once beyond these, for health checks and short requests about the service only.
     pub reserve: usize,
     /// Connections at once of one address, or of one network of IPv6 (/64). Those of this machine are not counted: behind a proxy all
     /// requests come from there.
     pub per_address: usize,
-    /// Of the reserve, connections at once of one address, be it this machine's. A connection that has asked nothing yet makes room for
-    /// one that comes.
-    pub reserve_per_address: usize,
     /// Time from the connection, or the end of the answer before, to the last of a request's headers.
     pub headers: Duration,
-    /// The same in the reserve, where others wait.
-    pub reserve_headers: Duration,
     /// Time from a request's headers to the last byte of its body.
     pub body: Duration,
-    /// Time in which a client that is being answered must take something. Event streams and long polls that have nothing to send are
-    /// not cut off by it.
+    /// Time in which a client has to take something of an answer that is ready. Event streams and long polls with nothing to send are not
+    /// affected.
     pub write: Duration,
 }
 
@@ -59,29 +51,27 @@ impl Default for ConnectionLimits {
             total: 2_000,
             reserve: 100,
             per_address: 200,
-            reserve_per_address: 20,
             headers: Duration::from_secs(15),
-            reserve_headers: Duration::from_secs(2),
             body: Duration::from_secs(60),
             write: Duration::from_secs(60),
         }
     }
 }
 
-/// Marks the requests of connections in the reserve.
+/// Marker of requests on connections in the reserve.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InReserve;
 
-/// From where a request comes: a client's address, or that of a proxy before the server.
+/// Address of the client, or of a proxy before the server.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peer(pub(crate) SocketAddr);
 
-/// Numbers of connections.
+/// Counts of connections.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ConnectionCounts {
-    /// Open ones.
+    /// Open connections.
     pub(crate) open: Gauge,
-    /// Those closed at once, since the start.
+    /// Connections refused since the start.
     pub(crate) refused: Counter,
 }
 
@@ -93,7 +83,7 @@ pub(crate) async fn serve_connections(
     counts: ConnectionCounts,
     shutdown: impl Future<Output = ()>,
 ) {
-    let places = Arc::new(Places::new(limits.clone()));
+    let places = Arc::new(Places::new(limits.clone(), counts.open));
     let connections = GracefulShutdown::new();
     let mut shutdown = pin!(shutdown);
     loop {
@@ -113,13 +103,11 @@ pub(crate) async fn serve_connections(
             tracing::debug!(%address, "a connection beyond the limits is closed");
             continue;
         };
-        let reserved = place.reserved.clone();
-        let is_reserve = reserved.is_some();
-        let asking = reserved.clone();
+        let connection = place.connection.clone();
         let routes = routes.clone().map_request(move |mut request: Request<Incoming>| {
+            connection.has_requested.store(true, Ordering::Relaxed);
             request.extensions_mut().insert(Peer(address));
-            if let Some(reserved) = &asking {
-                reserved.has_asked.store(true, Ordering::Relaxed);
+            if connection.is_in_reserve {
                 request.extensions_mut().insert(InReserve);
             }
             request
@@ -127,136 +115,103 @@ pub(crate) async fn serve_connections(
         let mut builder = http1::Builder::new();
         builder
             .timer(TokioTimer::new())
-            .header_read_timeout(if is_reserve { limits.reserve_headers } else { limits.headers })
-            .keep_alive(!is_reserve);
-        let stream = TokioIo::new(Patient { stream, patience: limits.write, waiting: None, refusal: None });
+            .header_read_timeout(limits.headers)
+            .keep_alive(!place.connection.is_in_reserve);
+        let stream = TokioIo::new(Patient { stream, patience: limits.write, waiting: None });
         let connection = builder.serve_connection(stream, TowerToHyperService::new(routes));
         let connection = connections.watch(connection);
-        let open = Open::new(counts.open.clone());
         tokio::spawn(async move {
-            let outdone = async {
-                match &reserved {
-                    Some(reserved) => reserved.outdone.notified().await,
-                    None => std::future::pending().await,
-                }
-            };
             tokio::select! {
                 ended = connection => if let Err(error) = ended {
                     tracing::debug!(%error, %address, "a connection ended early");
                 },
-                () = outdone => tracing::debug!(%address, "a connection that asks nothing makes room"),
+                () = place.connection.replaced.notified() => {
+                    tracing::debug!(%address, "a connection without a request is replaced by another");
+                }
             }
-            drop((place, open));
+            drop(place);
         });
     }
     drop(listener);
     connections.shutdown().await;
 }
 
-/// An open connection in a gauge.
-struct Open(Gauge);
-
-impl Open {
-    fn new(gauge: Gauge) -> Self {
-        gauge.inc();
-        Self(gauge)
-    }
-}
-
-impl Drop for Open {
-    fn drop(&mut self) {
-        self.0.dec();
-    }
-}
-
-/// Places for connections.
+/// Open connections, within the limits on their number.
 struct Places {
     limits: ConnectionLimits,
-    general: Arc<Semaphore>,
-    taken: Mutex<Taken>,
+    /// In order of arrival.
+    open: Mutex<Vec<Arc<Connection>>>,
+    number: Gauge,
 }
 
-#[derive(Default)]
-struct Taken {
-    /// Connections by address.
-    by_address: HashMap<IpAddr, usize>,
-    /// Those in the reserve, in the order in which they came.
-    reserve: Vec<Arc<Reserved>>,
-}
-
-/// A connection in the reserve.
-struct Reserved {
+/// An open connection.
+struct Connection {
     address: IpAddr,
-    has_asked: AtomicBool,
+    /// True for connections beyond [`ConnectionLimits::total`], which may make light requests only.
+    is_in_reserve: bool,
+    has_requested: AtomicBool,
     /// Another connection has taken the place of this one.
-    outdone: Notify,
+    replaced: Notify,
 }
 
-/// A connection's place; free again when it is dropped.
+/// Place of a connection; free again when it is dropped.
 struct Place {
     places: Arc<Places>,
-    address: IpAddr,
-    /// None outside the reserve.
-    reserved: Option<Arc<Reserved>>,
-    _permit: Option<OwnedSemaphorePermit>,
+    connection: Arc<Connection>,
 }
 
 impl Places {
-    fn new(limits: ConnectionLimits) -> Self {
-        Places { general: Arc::new(Semaphore::new(limits.total)), limits, taken: Mutex::default() }
+    fn new(limits: ConnectionLimits, number: Gauge) -> Self {
+        Places { limits, open: Mutex::default(), number }
     }
 
+    /// Takes a place. If none is free, the oldest connection without a request loses its own, so that clients that open many connections and
+    /// stay silent do not keep others out; if all have requested something, the place is in the reserve.
     fn take(self: &Arc<Self>, address: IpAddr) -> Option<Place> {
         let address = network(address);
-        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        let all = taken.by_address.get(&address).copied().unwrap_or_default();
-        if all >= self.limits.per_address && !address.is_loopback() {
+        let mut open = self.open();
+        let of_address = open.iter().filter(|other| other.address == address).count();
+        if of_address >= self.limits.per_address && !address.is_loopback() {
             return None;
         }
-        let permit = self.general.clone().try_acquire_owned().ok();
-        let reserved = match permit {
-            Some(_) => None,
-            None => Some(self.reserve(&mut taken, address)?),
+        let is_in_reserve = if open.iter().filter(|other| !other.is_in_reserve).count() < self.limits.total {
+            false
+        } else if let Some(silent) =
+            open.iter().position(|other| !other.has_requested.load(Ordering::Relaxed))
+        {
+            let silent = open.remove(silent);
+            silent.replaced.notify_one();
+            silent.is_in_reserve
+        } else if open.len() < self.limits.total + self.limits.reserve {
+            true
+        } else {
+            return None;
         };
-        taken.by_address.insert(address, all + 1);
-        Some(Place { places: self.clone(), address, reserved, _permit: permit })
+        let connection = Arc::new(Connection {
+            address,
+            is_in_reserve,
+            has_requested: AtomicBool::new(false),
+            replaced: Notify::new(),
+        });
+        open.push(connection.clone());
+        self.number.set(open.len() as i64);
+        Some(Place { places: self.clone(), connection })
     }
 
-    /// A place in the reserve. Where all are taken, the oldest connection that has asked nothing yet loses its own: who opens many and
-    /// stays silent must not keep out who asks.
-    fn reserve(&self, taken: &mut Taken, address: IpAddr) -> Option<Arc<Reserved>> {
-        let of_address = |reserved: &Reserved| reserved.address == address;
-        let own = taken.reserve.iter().filter(|reserved| of_address(reserved)).count();
-        let has_its_share = own >= self.limits.reserve_per_address;
-        if has_its_share || taken.reserve.len() >= self.limits.reserve {
-            let silent = taken.reserve.iter().position(|reserved| {
-                !reserved.has_asked.load(Ordering::Relaxed) && (!has_its_share || of_address(reserved))
-            });
-            taken.reserve.remove(silent?).outdone.notify_one();
-        }
-        let reserved =
-            Arc::new(Reserved { address, has_asked: AtomicBool::new(false), outdone: Notify::new() });
-        taken.reserve.push(reserved.clone());
-        Some(reserved)
+    fn open(&self) -> MutexGuard<'_, Vec<Arc<Connection>>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        let mut taken = self.places.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(reserved) = &self.reserved {
-            taken.reserve.retain(|other| !Arc::ptr_eq(other, reserved));
-        }
-        if let Some(all) = taken.by_address.get_mut(&self.address) {
-            *all -= 1;
-            if *all == 0 {
-                taken.by_address.remove(&self.address);
-            }
-        }
+        let mut open = self.places.open();
+        open.retain(|other| !Arc::ptr_eq(other, &self.connection));
+        self.places.number.set(open.len() as i64);
     }
 }
 
-/// Network that counts as one address: an address of IPv4, a /64 of IPv6, which is what one customer gets at least.
+/// Network that counts as one address: an IPv4 address, or an IPv6 /64, the least that a customer gets.
 pub(crate) fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {
@@ -266,14 +221,12 @@ pub(crate) fn network(address: IpAddr) -> IpAddr {
     }
 }
 
-/// A connection that is given up when its client takes nothing of an answer for too long, and on which no refusal is without a problem.
+/// A connection that ends when its client takes nothing of an answer for too long.
 struct Patient {
     stream: TcpStream,
     patience: Duration,
-    /// Until when the client has to take something that waits for it.
+    /// Deadline of the client for the pending write.
     waiting: Option<Pin<Box<Sleep>>>,
-    /// Rest of a refusal that stands in for one without a problem.
-    refusal: Option<VecDeque<u8>>,
 }
 
 impl Patient {
@@ -286,51 +239,6 @@ impl Patient {
         let waiting = self.waiting.get_or_insert_with(|| Box::pin(tokio::time::sleep(patience)));
         waiting.as_mut().poll(context).map(|()| Err(io::ErrorKind::TimedOut.into()))
     }
-
-    /// Writes a refusal in place of `bytes`, if there is one.
-    fn poll_refuse(&mut self, context: &mut Context<'_>, bytes: &[u8]) -> Option<Poll<io::Result<usize>>> {
-        if self.refusal.is_none() {
-            self.refusal = refusal(bytes).map(VecDeque::from);
-        }
-        let refusal = self.refusal.as_mut()?;
-        let written = loop {
-            if refusal.is_empty() {
-                break Ok(bytes.len());
-            }
-            match Pin::new(&mut self.stream).poll_write(context, refusal.make_contiguous()) {
-                Poll::Ready(Ok(0)) => break Err(io::ErrorKind::WriteZero.into()),
-                Poll::Ready(Ok(count)) => drop(refusal.drain(..count)),
-                Poll::Ready(Err(error)) => break Err(error),
-                Poll::Pending => return Some(Poll::Pending),
-            }
-        };
-        self.refusal = None;
-        Some(Poll::Ready(written))
-    }
-}
-
-/// Refusal in place of an answer that the HTTP library itself gives to a request that it does not read to its end: a target or header
-/// so long that no route ever sees it. Such an answer has no body.
-fn refusal(answer: &[u8]) -> Option<Vec<u8>> {
-    let is_bare = || answer.windows(19).any(|window| window.eq_ignore_ascii_case(b"content-length: 0\r\n"));
-    let (kind, what) = match answer.get(..12)? {
-        b"HTTP/1.1 414" => (ProblemKind::TargetTooLong, "path and query"),
-        b"HTTP/1.1 431" => (ProblemKind::HeaderTooLarge, "header fields"),
-        _ => return None,
-    };
-    if !is_bare() {
-        return None;
-    }
-    let problem = ProblemDetails::new(kind, format!("the request's {what} are too long to be read"));
-    let body = serde_json::to_string(&problem).ok()?;
-    let reason = StatusCode::from_u16(problem.status).ok()?.canonical_reason()?;
-    let (status, length) = (problem.status, body.len());
-    Some(
-        format!(
-            "HTTP/1.1 {status} {reason}\r\ncontent-type: {PROBLEM_MEDIA_TYPE}\r\ncontent-length: {length}\r\nconnection: close\r\n\r\n{body}"
-        )
-        .into_bytes(),
-    )
 }
 
 impl AsyncRead for Patient {
@@ -349,10 +257,7 @@ impl AsyncWrite for Patient {
         context: &mut Context<'_>,
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        let written = match self.poll_refuse(context, bytes) {
-            Some(written) => written,
-            None => Pin::new(&mut self.stream).poll_write(context, bytes),
-        };
+        let written = Pin::new(&mut self.stream).poll_write(context, bytes);
         self.watch(context, written)
     }
 
@@ -361,11 +266,7 @@ impl AsyncWrite for Patient {
         context: &mut Context<'_>,
         pieces: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
-        let first = pieces.first().map_or(&[][..], |piece| piece);
-        let written = match self.poll_refuse(context, first) {
-            Some(written) => written,
-            None => Pin::new(&mut self.stream).poll_write_vectored(context, pieces),
-        };
+        let written = Pin::new(&mut self.stream).poll_write_vectored(context, pieces);
         self.watch(context, written)
     }
 
@@ -387,18 +288,22 @@ mod tests {
     use super::*;
 
     fn places() -> Arc<Places> {
-        let limits = ConnectionLimits {
-            total: 4,
-            reserve: 2,
-            per_address: 3,
-            reserve_per_address: 1,
-            ..ConnectionLimits::default()
-        };
-        Arc::new(Places::new(limits))
+        let limits = ConnectionLimits { total: 4, reserve: 2, per_address: 3, ..ConnectionLimits::default() };
+        Arc::new(Places::new(limits, Gauge::default()))
     }
 
     fn address(text: &str) -> IpAddr {
         text.parse().expect("an address")
+    }
+
+    /// Places of connections of this machine that have requested something.
+    fn busy(places: &Arc<Places>, number: usize) -> Vec<Place> {
+        let take = |_| {
+            let place = places.take(address("127.0.0.1")).expect("a place");
+            place.connection.has_requested.store(true, Ordering::Relaxed);
+            place
+        };
+        (0..number).map(take).collect()
     }
 
     #[test]
@@ -407,66 +312,36 @@ mod tests {
         let greedy = address("192.0.2.1");
         let held: Vec<Place> = (0..3).map(|_| places.take(greedy).expect("a place")).collect();
         assert!(places.take(greedy).is_none());
-        assert!(places.take(address("192.0.2.2")).is_some_and(|place| place.reserved.is_none()));
+        assert!(places.take(address("192.0.2.2")).is_some_and(|place| !place.connection.is_in_reserve));
         drop(held);
         assert!(places.take(greedy).is_some());
-        assert!(places.taken.lock().expect("sound").by_address.is_empty());
-    }
-
-    /// The reserved place of a connection that has asked for something.
-    fn asking(places: &Arc<Places>, from: &str) -> Option<Place> {
-        let place = places.take(address(from))?;
-        place.reserved.as_ref().expect("a place in the reserve").has_asked.store(true, Ordering::Relaxed);
-        Some(place)
+        assert!(places.open().is_empty());
     }
 
     #[test]
-    fn what_is_beyond_all_places_gets_one_of_the_reserve_each() {
+    fn connections_beyond_all_busy_ones_are_in_the_reserve() {
         let places = places();
-        let local = address("127.0.0.1");
-        let held: Vec<Place> = (0..4).map(|_| places.take(local).expect("a place")).collect();
-        assert!(held.iter().all(|place| place.reserved.is_none()));
-        let reserved = asking(&places, "127.0.0.1").expect("a place in the reserve");
-        assert!(places.take(local).is_none());
-        let _other = asking(&places, "192.0.2.1").expect("another place in the reserve");
-        assert!(places.take(address("192.0.2.2")).is_none());
-        drop(reserved);
-        assert!(places.take(address("192.0.2.2")).is_some_and(|place| place.reserved.is_some()));
+        let held = busy(&places, 6);
+        let in_reserve: Vec<bool> = held.iter().map(|place| place.connection.is_in_reserve).collect();
+        assert_eq!(in_reserve, [false, false, false, false, true, true]);
+        assert!(places.take(address("192.0.2.1")).is_none());
+        drop(held);
+        assert!(places.take(address("192.0.2.1")).is_some_and(|place| !place.connection.is_in_reserve));
     }
 
     #[test]
-    fn who_asks_nothing_makes_room_in_the_reserve() {
+    fn the_oldest_connection_without_a_request_is_replaced() {
         let places = places();
-        let _held: Vec<Place> = (0..4).map(|_| places.take(address("127.0.0.1")).expect("a place")).collect();
-        let reserve_of = |places: &Places| {
-            let taken = places.taken.lock().expect("sound");
-            taken.reserve.iter().map(|reserved| reserved.address).collect::<Vec<_>>()
-        };
-        let silent = places.take(address("127.0.0.1")).expect("a place in the reserve");
-        let asking_too = asking(&places, "127.0.0.1").expect("the place of the silent one");
-        assert_eq!(reserve_of(&places), [address("127.0.0.1")]);
+        let of = |places: &Places| places.open().iter().map(|open| open.address).collect::<Vec<_>>();
+        let silent = ["192.0.2.1", "192.0.2.2"].map(|from| places.take(address(from)).expect("a place"));
+        let held = busy(&places, 2);
+        let third = places.take(address("192.0.2.3")).expect("the place of the first");
+        assert!(!third.connection.is_in_reserve);
+        assert_eq!(of(&places), ["192.0.2.2", "127.0.0.1", "127.0.0.1", "192.0.2.3"].map(address));
         drop(silent);
-        assert_eq!(reserve_of(&places), [address("127.0.0.1")]);
-        let _other = places.take(address("192.0.2.1")).expect("another place in the reserve");
-        let _third = places.take(address("192.0.2.2")).expect("the place of the silent one");
-        assert_eq!(reserve_of(&places), [address("127.0.0.1"), address("192.0.2.2")]);
-        drop(asking_too);
-    }
-
-    #[test]
-    fn refusals_without_a_problem_get_one() {
-        let bare =
-            b"HTTP/1.1 431 Request Header Fields Too Large\r\nconnection: close\r\ncontent-length: 0\r\n\r\n";
-        let refused = String::from_utf8(refusal(bare).expect("a refusal")).expect("text");
-        assert!(refused.starts_with("HTTP/1.1 431 Request Header Fields Too Large\r\n"), "{refused}");
-        assert!(refused.contains("urn:drillsweep:problem:header-too-large"), "{refused}");
-        for answer in [
-            "HTTP/1.1 414 URI Too Long\r\ncontent-length: 120\r\n\r\n{}",
-            "HTTP/1.1 200 OK\r\ncontent-length: 0\r\n\r\n",
-            "HTTP/1.1 4",
-        ] {
-            assert_eq!(refusal(answer.as_bytes()), None, "{answer}");
-        }
+        assert_eq!(of(&places), ["127.0.0.1", "127.0.0.1", "192.0.2.3"].map(address));
+        drop((held, third));
+        assert!(places.open().is_empty());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! All routes, in the order in which a newcomer should read them.
+//! All routes, in the order in which to read them.
 
 use std::io::Read as _;
 use std::sync::LazyLock;
@@ -18,11 +18,11 @@ use crate::guard::middleware;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::{
-    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
+    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
     snapshots, spectrogram, statistics, status, sweeps, verification, web,
 };
 
-/// The OpenAPI 3.1 document of the service, as it is served. The program holds it compressed: it has a tenth of the size, and is seldom read.
+/// The OpenAPI 3.1 document of the service, embedded compressed, at a tenth of its size.
 pub static OPENAPI_JSON: LazyLock<String> = LazyLock::new(|| {
     let compressed: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/openapi.json.gz"));
     let mut document = String::new();
@@ -30,7 +30,7 @@ pub static OPENAPI_JSON: LazyLock<String> = LazyLock::new(|| {
     document
 });
 
-/// The service without the network. `stopping` ends long polls when it turns true.
+/// The service without the network. Long polls and event streams end when `stopping` is true.
 pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Router {
     routes(&App::new(store, config, stopping))
 }
@@ -45,24 +45,25 @@ pub(crate) fn routes(app: &App) -> Router {
     middleware::wrap(routes, app)
 }
 
-/// Every route for programs, and what answers which methods there: those of the OpenAPI document, which is made of the annotations of
-/// the same functions.
+/// Routes for programs with their handlers: those of the OpenAPI document, which is made from annotations of the same functions.
 fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
     vec![
-        ("/v1/sweeps", post(sweeps::create).get(sweeps::list)),
-        ("/v1/sweeps/{id}", get(sweeps::show).patch(sweeps::change).delete(sweeps::delete)),
-        ("/v1/sweeps/{id}/cancel", post(sweeps::cancel)),
-        ("/v1/sweeps/{id}/retry", post(sweeps::retry)),
-        ("/v1/sweeps/{id}/pause", post(sweeps::pause)),
-        ("/v1/sweeps/{id}/resume", post(sweeps::resume)),
-        ("/v1/sweeps/{id}/table", get(sweeps::table)),
-        ("/v1/sweeps/{id}/table/columns", get(sweeps::columns)),
+        ("/v1/sweeps", post(sweeps::submit::create).get(sweeps::list::list)),
+        (
+            "/v1/sweeps/{id}",
+            get(sweeps::show::show).patch(sweeps::change::change).delete(sweeps::change::delete),
+        ),
+        ("/v1/sweeps/{id}/cancel", post(sweeps::change::cancel)),
+        ("/v1/sweeps/{id}/retry", post(sweeps::change::retry)),
+        ("/v1/sweeps/{id}/pause", post(sweeps::change::pause)),
+        ("/v1/sweeps/{id}/resume", post(sweeps::change::resume)),
+        ("/v1/sweeps/{id}/table", get(sweeps::table::table)),
+        ("/v1/sweeps/{id}/table/columns", get(sweeps::table::columns)),
         ("/v1/sweeps/{id}/verification", get(verification::show)),
         ("/v1/sweeps/{id}/events", get(events::follow)),
-        ("/v1/events", get(all_events::follow)),
         ("/v1/sweeps/{id}/export", get(export::export)),
-        ("/v1/runs", post(sweeps::create_run)),
-        ("/v1/sweeps/{id}/points", get(points::list).post(sweeps::append)),
+        ("/v1/runs", post(sweeps::submit::create_run)),
+        ("/v1/sweeps/{id}/points", get(points::list).post(sweeps::append::append)),
         ("/v1/sweeps/{id}/points/{n}", get(points::show)),
         ("/v1/failures", get(points::failures)),
         ("/v1/sweeps/{id}/points/{n}/artifacts", get(files::list)),
@@ -78,8 +79,8 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
         ("/v1/sweeps/{id}/points/{n}/energy", get(results::energy)),
         ("/v1/sweeps/{id}/points/{n}/course", get(results::course)),
         ("/v1/sweeps/{id}/points/{n}/statistics", get(statistics::show)),
-        ("/v1/sweeps/{id}/points/{n}/plan", get(scene::plan)),
-        ("/v1/sweeps/{id}/points/{n}/modes", get(scene::modes)),
+        ("/v1/sweeps/{id}/points/{n}/plan", get(analysis::plan)),
+        ("/v1/sweeps/{id}/points/{n}/modes", get(analysis::modes)),
         ("/v1/sweeps/{id}/points/{n}/cost", get(cost::show)),
         ("/v1/scenarios", get(scenarios::list).post(scenarios::read)),
         ("/v1/scenarios/{name}", get(scenarios::show)),
@@ -95,7 +96,7 @@ fn for_programs() -> Vec<(&'static str, MethodRouter<App>)> {
     ]
 }
 
-/// Pages for people, and what they load: no part of what programs talk to.
+/// Pages and their files, which are not in the OpenAPI document.
 fn for_people() -> Router<App> {
     Router::new()
         .route("/", get(web::page))
@@ -140,7 +141,7 @@ mod tests {
 
     use super::*;
 
-    /// The methods and paths of the document.
+    /// Methods and paths of the document.
     fn documented() -> BTreeSet<String> {
         let document: Value = serde_json::from_str(&OPENAPI_JSON).expect("JSON");
         let paths = document["paths"].as_object().expect("paths").iter();
@@ -161,13 +162,13 @@ mod tests {
         let service = router(store, Config::default(), stopping);
         let mut routed = BTreeSet::new();
         for (path, _) in for_programs() {
-            // No route takes it, so that the answer says which methods there are.
+            // No route has this method, so that the answer lists the methods that exist.
             let uri = path.replace(['{', '}'], "");
             let request = Request::builder().method(Method::TRACE).uri(uri).body(Body::empty());
             let answer = service.clone().oneshot(request.expect("a request")).await.expect("an answer");
             assert_eq!(answer.status(), StatusCode::METHOD_NOT_ALLOWED, "{path}");
             let allowed = answer.headers()[header::ALLOW].to_str().expect("text");
-            // Whoever answers GET answers HEAD, which the document leaves unsaid.
+            // Routes with GET have HEAD, which the document does not list.
             let methods = allowed.split(',').filter(|method| *method != "HEAD");
             routed.extend(methods.map(|method| format!("{method} {path}")));
         }

@@ -1,4 +1,4 @@
-//! The service's life, from listening to drained.
+//! Life of the service, from listening to drained.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
@@ -17,15 +17,15 @@ use crate::route::metrics;
 use crate::route::status::WORKER_SILENCE;
 use crate::router;
 
-/// Where the service listens by default: this machine only.
+/// Default address: this machine only.
 pub const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 7340);
 
-/// Where the service listens.
+/// Listeners of the service.
 #[derive(Debug)]
 pub struct Listeners {
     /// For the API.
     pub api: TcpListener,
-    /// For `/metrics`, which needs no token: to be reached by the operator's Prometheus only.
+    /// For `/metrics`, which needs no token: only Prometheus should reach it.
     pub metrics: Option<TcpListener>,
 }
 
@@ -43,7 +43,7 @@ impl Listeners {
     }
 }
 
-/// Why the service ended early, or did not begin.
+/// Error of starting or running the service.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The listener failed.
@@ -77,8 +77,7 @@ pub fn serve(
     serve_boxed(listeners, store, config, Box::pin(shutdown))
 }
 
-/// [`serve`] without type parameters. Since its future is boxed here, all that serves is compiled with this crate; boxed in a generic
-/// function, it would be compiled with each crate that calls it.
+/// [`serve`] without type parameters, so that the service is compiled with this crate and not with its callers.
 fn serve_boxed(
     listeners: Listeners,
     store: Store,
@@ -138,20 +137,20 @@ async fn serve_until_drained(
     result
 }
 
-/// How long a sweep may be hidden without anybody storing or deleting points of it.
+/// Time after which a hidden sweep counts as abandoned if no points of it are stored or deleted.
 const LEFT_BEHIND: Duration = Duration::from_secs(60);
 
-/// Gives the points of dead workers back to the queue, time after time, until the service stops. Workers do
-/// the same when they claim; this keeps what clients see right when there are none.
+/// Queues points of dead workers again at intervals until the service stops. Workers do so when they claim; this keeps states correct while
+/// there are no workers.
 async fn reap_expired_leases(mut app: App) {
-    // Workers of an earlier version that have been started with the service must have had the time to say so.
+    // Workers of an earlier version that start with the service need time to register.
     let outdated_from = Instant::now() + WORKER_SILENCE;
     let mut ticks = tokio::time::interval(app.config.reap_interval);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         tokio::select! {
             _ = ticks.tick() => {}
-            // An error means that the service is gone.
+            // An error means that the service has ended.
             _ = app.stopping.wait_for(|stopping| *stopping) => return,
         }
         match app.store.reap_expired().await {

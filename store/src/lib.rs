@@ -34,7 +34,7 @@ pub use error::{Result, StoreError};
 pub use metrics::Metrics;
 pub use store::{Store, StoreConfig};
 pub use sweep::change::{ChangeOutcome, DeleteOutcome, SweepChanges};
-pub use sweep::event::{Event, SweepMark};
+pub use sweep::event::Event;
 pub use sweep::failure::{FailureFilter, FailurePlace, FailureRecord};
 pub use sweep::point::{Artifact, PointRecord, TableRecord};
 pub use sweep::record::{SweepFilter, SweepRecord};

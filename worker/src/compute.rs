@@ -23,8 +23,8 @@ use drillsweep_study::starts::StartsCompared;
 use drillsweep_study::summary::{StaticsSummary, TransientSummary};
 use serde_json::{Map, Value, json};
 
-use crate::artifact::{ArtifactError, EncodedArtifact};
 use crate::cost::{cost_study, study_time};
+use crate::encode::{ArtifactError, EncodedArtifact};
 use crate::error::ComputeError;
 use crate::provenance::{Provenance, RunProvenance};
 use crate::spool::{Spool, Suspended};

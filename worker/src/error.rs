@@ -8,7 +8,8 @@ use drillsweep_sim::solve::statics::StaticsError;
 use drillsweep_study::cost::StudyError;
 use serde_json::{Map, json};
 
-use crate::artifact::ArtifactError;
+use crate::encode::ArtifactError;
+
 /// Errors that leave a point without a result.
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {

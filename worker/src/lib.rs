@@ -5,26 +5,26 @@
 //! runtime does input and output only; [`compute`] is plain code on a thread of low priority that may be cancelled
 //! through the simulation's own control handle.
 
-mod artifact;
 mod calibration;
-mod claim;
 mod compute;
 mod cost;
+mod encode;
 mod error;
 mod lease;
 mod memory;
 mod metrics;
 mod priority;
 mod provenance;
+mod run_loop;
 mod spool;
 mod stopwatch;
 mod tables;
 
-pub use artifact::{ArtifactError, EncodedArtifact};
 pub use calibration::calibrate;
-pub use claim::{WorkerConfig, WorkerError, host_name, run};
 pub use compute::{Computation, Computed, compute, compute_from, simulated_time_total};
 pub use cost::{cost_study, study_cpu_time, study_time};
+pub use encode::{ArtifactError, EncodedArtifact};
 pub use error::ComputeError;
 pub use provenance::{Provenance, RunProvenance, WorkerProvenance};
+pub use run_loop::{WorkerConfig, WorkerError, host_name, run};
 pub use spool::{Spool, Suspended, SuspendedError};

@@ -21,7 +21,7 @@ use drillsweep_table::{Column, Table};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::artifact::{ArtifactError, EncodedArtifact};
+use crate::encode::{ArtifactError, EncodedArtifact};
 use crate::spool::Spool;
 
 /// Rate of the table `course` at most \[Hz\]: several samples in a period of whirl and stick-slip.

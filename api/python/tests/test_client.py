@@ -54,7 +54,7 @@ def test_a_stream_goes_on_after_its_last_event_and_comments_are_no_events() -> N
         return httpx.Response(200, headers={"content-type": "text/event-stream"}, text=stream)
 
     with client_of(answer) as client:
-        assert list(client.events("/v1/events")) == [("point", {"number": 1}), ("point", {"number": 2})]
+        assert list(client.events("/v1/sweeps/1/events")) == [("point", {"number": 1}), ("point", {"number": 2})]
     assert asked == [None, "1", "2"]
 
 
@@ -271,7 +271,7 @@ def test_another_server_is_refused_before_anything_is_posted(other: tuple[str, l
     with Client(address) as client:
         for use in (
             lambda: client.run("paper-200m"),
-            lambda: next(client.watch()),
+            lambda: next(client.events("/v1/sweeps/1/events")),
             lambda: client.download("/v1/sweeps/1/export", "sweep.zip", {}),
         ):
             with pytest.raises(UnsupportedServer, match=expected):

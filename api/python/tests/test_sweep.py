@@ -254,23 +254,6 @@ def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> N
     assert last["state"] == "completed"
 
 
-def test_all_sweeps_are_watched_by_one_stream(client: Client) -> None:
-    axes: dict[str, Axis] = {"flow_rate": [0.015 + 0.001 * step for step in range(8)], "mud_density": [1450]}
-    watched = client.submit("paper-200m", set=SHORT, axes=axes, owner="watched")
-    watched.pause()
-    states: list[str] = []
-    for name, data in client.watch(owner="watched"):
-        assert (name, data["id"]) == ("sweep", watched.id)
-        if not states:
-            client.submit("paper-200m", set=SHORT, axes=axes, owner="somebody else").resume()
-            watched.resume()
-        states.append(data["state"])
-        if data["state"] == "completed":
-            break
-    assert states[0] == "paused"
-    assert data["counts"]["succeeded"] == 8
-
-
 def test_whole_sweep_comes_as_one_archive(client: Client, sweep: Sweep, tmp_path: Path) -> None:
     with zipfile.ZipFile(sweep.export(tmp_path / "sweep.zip", tables=["profile", "history"])) as archive:
         assert archive.testzip() is None

@@ -1,8 +1,7 @@
-//! Bodies that are written while they are sent: by a thread that waits for the client, so that only chunks are in memory.
+//! Bodies that are written while they are sent, by a thread that waits for the client, so that only chunks are in memory.
 
 use std::io::{self, Write};
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::body::Body;
 use axum::response::Response;
@@ -10,25 +9,24 @@ use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 
 use crate::answer::blocking::beside;
-use crate::answer::chunk::{self, Chunk, room};
+use crate::answer::chunk::{self, Allowance, Chunk};
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::Eviction;
 use crate::answer::format::Answer;
 
-/// Bytes that are sent at once.
+/// Size of a chunk \[bytes\].
 const CHUNK: usize = 64 << 10;
 
-/// Chunks that may wait for the client; then the writing waits.
+/// Chunks that may wait for the client before the writer waits.
 pub(crate) const WAITING_CHUNKS: usize = 2;
 
-/// Bytes of memory that a body takes on its way.
+/// Memory of a body while it is sent \[bytes\].
 pub(crate) const MEMORY_OF_BODY: u64 = ((WAITING_CHUNKS + 3) * CHUNK) as u64;
 
-/// Writes an answer in a thread of its own, which computes when it is its turn and has `held` until it ends. What fails before the
-/// first chunk is full is a problem, and an answer that is no longer than that has a length; what fails later breaks off the body.
+/// Writes an answer on a separate thread, which holds a turn while it computes and `held` until it ends. An error before the first chunk is
+/// full becomes a problem, an answer of one chunk has a length, and a later error breaks off the body.
 pub(crate) async fn send(
     turns: Arc<Semaphore>,
-    eviction: Eviction,
+    allowance: Allowance,
     held: impl Send + 'static,
     prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
 ) -> Result<Response> {
@@ -38,12 +36,12 @@ pub(crate) async fn send(
     beside(move || {
         let _entered = span.enter();
         let _held = held;
-        let mut sink = Sink::new(sender, handle, Some(turns), eviction);
+        let mut sink = Sink::new(sender, handle, Some(turns), allowance);
         let answer = match prepare() {
             Ok(answer) => answer,
             Err(error) => return sink.fail(error),
         };
-        // Nobody listens any more where the request has ended.
+        // An error means that the request has ended.
         let _ = head.send(answer.head());
         let written = answer.write(&mut sink);
         match written {
@@ -66,23 +64,23 @@ pub(crate) struct Sink {
     sender: mpsc::Sender<Result<Chunk>>,
     buffer: Vec<u8>,
     handle: Handle,
-    /// Where turns to compute are had, and the one at hand.
+    /// Source of turns to compute, and the turn that is held.
     turns: Option<Arc<Semaphore>>,
     turn: Option<OwnedSemaphorePermit>,
-    eviction: Eviction,
+    allowance: Allowance,
     is_abandoned: bool,
 }
 
 impl Sink {
-    /// A sink for a thread that computes when it is its turn; without `turns` whenever it likes.
+    /// A sink for a thread that computes in turns, or at any time without `turns`.
     pub(crate) fn new(
         sender: mpsc::Sender<Result<Chunk>>,
         handle: Handle,
         turns: Option<Arc<Semaphore>>,
-        eviction: Eviction,
+        allowance: Allowance,
     ) -> Self {
         let mut sink =
-            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, eviction, is_abandoned: false };
+            Sink { sender, buffer: Vec::new(), handle, turns, turn: None, allowance, is_abandoned: false };
         sink.take_turn();
         sink
     }
@@ -94,7 +92,7 @@ impl Sink {
         }
     }
 
-    /// Sends what is left, as the end of the body.
+    /// Sends the rest of the buffer as the end of the body.
     pub(crate) fn finish(mut self) {
         let bytes = std::mem::take(&mut self.buffer);
         let _ = self.send(Ok(Chunk::Last(bytes.into())));
@@ -105,44 +103,40 @@ impl Sink {
         let _ = self.send(Err(error));
     }
 
-    /// Whether the client has gone away, takes nothing, or takes it so slowly that it was broken off for others.
+    /// True if the client has gone away or is too slow.
     pub(crate) fn is_abandoned(&self) -> bool {
         self.is_abandoned
     }
 
-    /// Others compute while this one waits for its client.
+    /// Sends a chunk; the turn is free while this thread waits for its client.
     fn send(&mut self, chunk: Result<Chunk>) -> io::Result<()> {
         self.turn = None;
-        let Some(room) = self.handle.block_on(room(&self.sender, &mut self.eviction)) else {
-            return Err(self.abandon());
+        let bytes = match &chunk {
+            Ok(Chunk::One(bytes) | Chunk::Last(bytes)) => bytes.len(),
+            Err(_) => 0,
+        };
+        let Some(room) = self.handle.block_on(self.allowance.room(&self.sender, bytes)) else {
+            self.is_abandoned = true;
+            return Err(io::ErrorKind::BrokenPipe.into());
         };
         room.send(chunk);
         Ok(())
-    }
-
-    fn abandon(&mut self) -> io::Error {
-        self.is_abandoned = true;
-        io::ErrorKind::BrokenPipe.into()
     }
 }
 
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.is_abandoned {
-            // The one who writes has been told; an archive that is dropped then writes its end, which goes nowhere.
+            // The writer got an error before; a dropped archive still writes its directory, which is discarded.
             return Ok(bytes.len());
         }
-        // At once in full: a buffer that grows would leave holes of all sizes in memory.
+        // Reserved in full: a growing buffer fragments the heap.
         self.buffer.reserve_exact(CHUNK - self.buffer.len());
         let count = bytes.len().min(CHUNK - self.buffer.len());
         self.buffer.extend_from_slice(&bytes[..count]);
         if self.buffer.len() == CHUNK {
             let chunk = std::mem::take(&mut self.buffer);
             self.send(Ok(Chunk::One(chunk.into())))?;
-            // A client that takes each chunk within a moment may take all of them slowly.
-            if self.eviction.is_due(Duration::ZERO) {
-                return Err(self.abandon());
-            }
             self.take_turn();
         }
         Ok(count)

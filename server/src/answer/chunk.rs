@@ -1,4 +1,4 @@
-//! Parts of bodies that are made while they are sent, as the client takes them.
+//! Chunks of bodies that are made while they are sent, at the pace of the client.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -9,21 +9,17 @@ use tokio::sync::mpsc;
 use tokio::time::timeout;
 
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::Eviction;
 
-/// How long a client may take to make room for a chunk: whoever takes less does not read, but hold what others wait for.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Least mean rate at which clients have to take answers that hold memory \[bytes/s\].
+const LEAST_RATE: f64 = 32e3;
 
-/// How often an answer that waits for its client looks whether it is to be evicted.
-const LOOK: Duration = Duration::from_millis(250);
-
-/// A part of a body.
+/// A chunk of a body.
 pub(crate) enum Chunk {
     One(Bytes),
     Last(Bytes),
 }
 
-/// A body of chunks: `first`, and those that come. One that ends without its last breaks off.
+/// A body of `first` and the chunks received after it. It breaks off if they end without a last one.
 pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>) -> Body {
     let chunks = futures::stream::unfold(Some((first, receiver)), async |state| {
         let (first, mut receiver) = state?;
@@ -38,7 +34,7 @@ pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>
             None => (Err(io::ErrorKind::UnexpectedEof.into()), None),
         })
     });
-    // Compression polls a stream beyond its end.
+    // Compression polls a stream after its end.
     Body::from_stream(chunks.fuse())
 }
 
@@ -49,20 +45,60 @@ fn broken_off(error: Error) -> io::Error {
     io::Error::other(detail)
 }
 
-/// Room for a chunk, as soon as the client makes some; none if it has gone away, takes nothing, or is so slow that the answer is evicted for others.
-pub(crate) async fn room<'s, T>(
-    sender: &'s mpsc::Sender<T>,
-    eviction: &mut Eviction,
-) -> Option<mpsc::Permit<'s, T>> {
-    let began = Instant::now();
-    loop {
-        match timeout(LOOK, sender.reserve()).await {
-            Ok(room) => {
-                eviction.note(began.elapsed());
-                return room.ok();
+/// Time that a client may still keep an answer waiting. A few slow clients would otherwise hold the memory of all answers for hours.
+pub(crate) struct Allowance {
+    left: Duration,
+    longest: Duration,
+}
+
+impl Allowance {
+    pub(crate) fn new(longest: Duration) -> Self {
+        Self { left: longest, longest }
+    }
+
+    /// Room for a chunk of `bytes` as soon as the client makes some, which renews the allowance by the time that the chunk takes at
+    /// [`LEAST_RATE`]; `None` if the client has gone away, or has used the allowance up.
+    pub(crate) async fn room<'s, T>(
+        &mut self,
+        sender: &'s mpsc::Sender<T>,
+        bytes: usize,
+    ) -> Option<mpsc::Permit<'s, T>> {
+        let began = Instant::now();
+        let Ok(room) = timeout(self.left, sender.reserve()).await else {
+            tracing::warn!("an answer is broken off: its client takes less than {LEAST_RATE} bytes/s");
+            return None;
+        };
+        self.note(began.elapsed(), bytes);
+        room.ok()
+    }
+
+    fn note(&mut self, waited: Duration, bytes: usize) {
+        let renewed = Duration::from_secs_f64(bytes as f64 / LEAST_RATE);
+        self.left = self.left.saturating_sub(waited).saturating_add(renewed).min(self.longest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seconds after which a client is broken off that takes 64 kB every `interval`; `None` if it never is.
+    fn broken_off_after(interval: f64) -> Option<f64> {
+        let mut allowance = Allowance::new(Duration::from_secs(30));
+        for taken in 0..1_000 {
+            if allowance.left < Duration::from_secs_f64(interval) {
+                return Some(f64::from(taken) * interval + allowance.left.as_secs_f64());
             }
-            Err(_) if began.elapsed() >= PATIENCE || eviction.is_due(began.elapsed()) => return None,
-            Err(_) => {}
+            allowance.note(Duration::from_secs_f64(interval), 64_000);
         }
+        None
+    }
+
+    #[test]
+    fn a_client_has_to_take_32_kb_a_second() {
+        assert_eq!(broken_off_after(1.99), None);
+        // It loses 1 s with each chunk.
+        assert_eq!(broken_off_after(3.0), Some(86.0));
+        assert_eq!(broken_off_after(3_600.0), Some(30.0));
     }
 }

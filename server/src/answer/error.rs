@@ -13,11 +13,11 @@ use drillsweep_table::TableError;
 /// The result of a handler.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// A problem on its way to the client. What only the operator should see is logged where it is made.
+/// A problem to be sent to the client. Details for the operator alone are logged where it is made.
 #[derive(Debug, Clone)]
 pub(crate) struct Error {
     problem: Box<ProblemDetails>,
-    /// Seconds after which another try may succeed.
+    /// Retry-After \[s\].
     retry_after: Option<u32>,
 }
 
@@ -32,18 +32,18 @@ impl Error {
         ProblemDetails::invalid_parameter(name, got, detail).into()
     }
 
-    /// A failure of the service itself: the log gets the reason, the client does not.
+    /// A failure of the service itself, whose reason is logged and not sent.
     pub(crate) fn internal(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
         tracing::error!(%reason, "a request failed");
         Error::new(ProblemKind::Internal, "the service failed; its log has the reason under this request id")
     }
 
-    /// A failure that is expected to pass soon.
+    /// A failure that is expected to pass within a second.
     pub(crate) fn unavailable(reason: &(impl std::fmt::Display + ?Sized)) -> Self {
         Self::unavailable_for(reason, Duration::from_secs(1))
     }
 
-    /// A failure that is expected to pass after `wait`, which is told in whole seconds.
+    /// A failure that is expected to pass after `wait`, which is rounded up to seconds.
     pub(crate) fn unavailable_for(reason: &(impl std::fmt::Display + ?Sized), wait: Duration) -> Self {
         if let Some(unlogged) = REFUSALS.next() {
             tracing::warn!(%reason, unlogged, "a request could not be served for the time being");
@@ -53,31 +53,31 @@ impl Error {
         Error { retry_after: Some(seconds), ..Error::new(ProblemKind::Unavailable, detail) }
     }
 
-    /// The caller must say who they are.
+    /// The request needs a token.
     pub(crate) fn unauthorized(detail: &str) -> Self {
         Error::new(ProblemKind::Unauthorized, detail)
     }
 
-    /// A problem that may pass: another try may succeed after `wait`.
+    /// A temporary problem: a retry may succeed after `wait`.
     pub(crate) fn temporary(kind: ProblemKind, detail: impl Into<String>, wait: Duration) -> Self {
         Error { retry_after: Some(whole_seconds(wait)), ..Error::new(kind, detail) }
     }
 
-    /// Whether it is a problem of this kind.
+    /// True for a problem of this kind.
     pub(crate) fn is_of(&self, kind: ProblemKind) -> bool {
         self.problem.type_uri == kind.uri()
     }
 
-    /// The problem, to be written out where the id of the request is known.
+    /// The problem without the id of the request.
     pub(crate) fn into_problem(self) -> ProblemDetails {
         *self.problem
     }
 }
 
-/// Refusals in the log: a storm of them must not fill the disk.
+/// Log of refusals, limited so that a storm of them does not fill the disk.
 static REFUSALS: Sparse = Sparse::new(Duration::from_secs(1));
 
-/// Lines of the log of one kind, one in a time span at most.
+/// Log lines of one kind, at most one in a time span.
 struct Sparse {
     between: Duration,
     state: Mutex<(Option<Instant>, u64)>,
@@ -88,7 +88,7 @@ impl Sparse {
         Self { between, state: Mutex::new((None, 0)) }
     }
 
-    /// The number of lines left out since the last, if one is due.
+    /// Number of lines left out since the last one, if a line is due.
     fn next(&self) -> Option<u64> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let (last, unlogged) = &mut *state;
@@ -156,7 +156,7 @@ impl From<TableError> for Error {
 }
 
 impl IntoResponse for Error {
-    /// A response without a body: the middleware that knows the request's id writes it.
+    /// A response without a body, which the middleware writes with the request's id.
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.problem.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let mut response = status.into_response();

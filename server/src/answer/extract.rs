@@ -1,4 +1,4 @@
-//! Extractors that answer with problems naming what is wrong: the field, the parameter, what would be valid.
+//! Extractors whose problems name the wrong field or parameter and its valid values.
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -24,17 +24,17 @@ use crate::app::App;
 use crate::app::bodies::BodyMemory;
 use crate::guard::caller::Caller;
 
-/// Bytes of a body that is read where the request is handled; larger ones are read in a place of their own.
+/// Largest body that is parsed without a place for expansions \[bytes\].
 const SMALL_BODY: usize = 64 << 10;
 
 /// A small JSON body.
 pub(crate) struct Json<T>(pub(crate) T);
 
-/// A JSON body that may be large, as it was sent. It is read in a place for expansions.
+/// A JSON body that may be large, unparsed; it is parsed in a place for expansions.
 pub(crate) struct Body {
-    /// As it was sent.
+    /// The unparsed bytes.
     pub(crate) bytes: Bytes,
-    /// Its memory, until the work on it has ended.
+    /// Its memory, held until the work on it has ended.
     _memory: BodyMemory,
 }
 
@@ -54,7 +54,7 @@ impl FromRequest<App> for Body {
     }
 }
 
-/// Receives a body of JSON of at most `most` bytes, whose memory grows as it comes.
+/// Receives a JSON body of at most `most` bytes; its memory grows as it arrives.
 async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error> {
     let media_type = request.headers().get(header::CONTENT_TYPE);
     let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
@@ -70,7 +70,7 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
         return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
     }
     let too_large = || Error::new(ProblemKind::BodyTooLarge, format!("a body has at most {most} bytes"));
-    // Before the first byte: a client that waits for `100 Continue` need not send any.
+    // Checked before the first byte, so that a client that waits for `100 Continue` sends none.
     let length = request.headers().typed_get::<ContentLength>().map_or(0, |ContentLength(length)| length);
     if length > most as u64 {
         return Err(too_large());
@@ -104,8 +104,8 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
     Ok(Body { bytes: bytes.freeze(), _memory: memory })
 }
 
-/// Memory at most that reading a body of `bytes` takes: a value of a change takes 80 bytes, and an object that holds it some 500; a
-/// listed value takes 8.
+/// Bound on the memory for parsing a body of `bytes` \[bytes\]: a value of a change takes 80 bytes, an object around it about 500, a listed
+/// value 8.
 pub(crate) fn memory_of_reading(bytes: usize) -> usize {
     const OF_VALUE: usize = 300;
     let values = (bytes / 2).min(LIMITS.values_per_request);
@@ -113,14 +113,14 @@ pub(crate) fn memory_of_reading(bytes: usize) -> usize {
     values * OF_VALUE + listed
 }
 
-/// Reads a type out of JSON, with the place of what is wrong.
+/// Parses JSON; errors point to the wrong member.
 pub(crate) fn read_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     let (mut format, mut track) =
         (serde_json::Deserializer::from_slice(bytes), serde_path_to_error::Track::new());
     let left = Cell::new(LIMITS.values_per_request);
     let count = Count { left: Some(&left), is_body: true };
     if let Err(error) = count.deserialize(serde_path_to_error::Deserializer::new(&mut format, &mut track)) {
-        // What is no JSON is no member's fault.
+        // Invalid JSON has no member to point to.
         let pointer = if error.is_data() { pointer(&track.path()) } else { String::new() };
         return Err(malformed(pointer, &error));
     }
@@ -132,17 +132,16 @@ pub(crate) fn read_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Error> {
     Ok(value)
 }
 
-/// Members of the body whose values are not counted: their own readers bound them.
+/// Members of the body whose values are not counted, since their readers bound them.
 const LISTS: [&str; 2] = ["axes", "points"];
 
 /// Members of an object.
 const MOST_MEMBERS: usize = 200;
 
-/// Reads JSON for its size and for members that an object has twice, and keeps nothing: maps would take the last of these, and the
-/// client could have meant the other.
+/// Scans JSON for its number of values and for duplicate members, of which a map would silently keep the last.
 #[derive(Clone, Copy)]
 struct Count<'c> {
-    /// Values that may still come; none of a list that is not counted.
+    /// Values that may still follow; `None` within a list that is not counted.
     left: Option<&'c Cell<usize>>,
     is_body: bool,
 }
@@ -234,7 +233,7 @@ fn malformed(pointer: String, error: &serde_json::Error) -> Error {
     ProblemDetails::malformed_body(pointer, error).into()
 }
 
-/// A path of serde's as a JSON Pointer. A variant that has fields is a member that holds them.
+/// A path of serde as a JSON Pointer; a variant with fields is a member.
 fn pointer(path: &serde_path_to_error::Path) -> String {
     use serde_path_to_error::Segment;
     let mut pointer = String::new();
@@ -251,7 +250,7 @@ fn pointer(path: &serde_path_to_error::Path) -> String {
     pointer
 }
 
-/// Query parameters; an unknown one is refused by name.
+/// Query parameters; unknown ones are refused by name.
 pub(crate) struct Query<T>(pub(crate) T);
 
 impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Query<T> {
@@ -303,7 +302,7 @@ fn describe(expected_type: &str) -> &str {
     }
 }
 
-/// Query values by what they are, with messages that say what would be valid.
+/// Parsers of query values, whose messages state the valid values.
 pub(crate) mod value {
     use std::time::Duration;
 
@@ -319,7 +318,7 @@ pub(crate) mod value {
         }
     }
 
-    /// A whole number of 1 or more, which the document's format `int32` has.
+    /// A whole number from 1, of format `int32` in the OpenAPI document.
     pub(crate) fn count<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
         let text = String::deserialize(deserializer)?;
         match text.parse() {
@@ -363,7 +362,7 @@ pub(crate) mod value {
         text.parse().map_err(|_| D::Error::custom("must be true or false"))
     }
 
-    /// `true` or `false` where either is a choice of its own.
+    /// `true` or `false`, or absent.
     pub(crate) fn choice<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<bool>, D::Error> {
         truth(deserializer).map(Some)
     }
@@ -375,7 +374,7 @@ pub(crate) mod value {
     }
 }
 
-/// The number of entries in a page: as asked for, else 50.
+/// Entries in a page: the requested number, or 50.
 pub(crate) fn page_size(limit: Option<u32>) -> Result<u32, Error> {
     match limit {
         None => Ok(DEFAULT_PAGE_SIZE),

@@ -1,24 +1,21 @@
-//! Which format a table is served in, and how.
+//! Formats of tables: choice and writing.
 
-use std::fmt::Debug;
-use std::fs::File;
 use std::io;
-use std::sync::LazyLock;
 
 use axum::body::{Body, Bytes};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{ChartError, Drawing, PNG_WIDTH};
 use drillsweep_table::parquet::Cut;
 use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
-use headers::{ETag, HeaderMapExt as _, IfNoneMatch};
 use serde::Deserialize;
 
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::stored::{Stored, StoredFile};
 
-/// The formats in which tables are served.
+/// Formats in which tables are served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -33,7 +30,7 @@ pub(crate) enum TableFormat {
     Npz,
 }
 
-/// The formats in which tables are served that can be shown as a picture.
+/// Formats of tables that can also be drawn as pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -46,9 +43,9 @@ pub(crate) enum PictureFormat {
     Parquet,
     /// NumPy's archive of arrays.
     Npz,
-    /// A picture, as a drawing.
+    /// A picture as SVG.
     Svg,
-    /// A picture, as pixels.
+    /// A picture as PNG.
     Png,
 }
 
@@ -65,7 +62,7 @@ pub(crate) enum Format {
 
 /// Format that a query may request.
 pub(crate) trait Asked: Into<Format> {
-    /// All formats that it may request; on a tie `Accept` takes what comes first.
+    /// All formats that the query may request; on a tie of `Accept` the first one wins.
     const OFFERED: &'static [Format];
 }
 
@@ -103,7 +100,7 @@ impl From<PictureFormat> for Format {
 }
 
 impl Format {
-    /// The media type that the format is served as.
+    /// Media type of the format.
     pub(crate) fn media_type(self) -> &'static str {
         match self {
             Format::Json => "application/json",
@@ -126,8 +123,8 @@ impl Format {
         }
     }
 
-    /// Bytes of memory that it takes to write what takes so many to be read. A Parquet file's footer, with its statistics, is larger
-    /// on the way out.
+    /// Memory for writing a table in this format \[bytes\], from that for reading it. The footer of Parquet, with its statistics, is larger
+    /// in writing.
     pub(crate) fn memory(self, reading: u64) -> u64 {
         if self == Format::Parquet { 3 * reading + parquet::MEMORY_OF_WRITER } else { reading }
     }
@@ -189,7 +186,7 @@ fn best(accept: &str, offered: &[Format]) -> Option<Format> {
     chosen
 }
 
-/// Answer to serve, as a file for those who save it.
+/// A table or picture to serve, with a file name.
 pub(crate) struct Answer {
     head: Head,
     content: Content,
@@ -202,8 +199,8 @@ enum Content {
 }
 
 impl Answer {
-    /// A table in memory, or its columns `fields`, in a format that is no picture. Its tag, where that is not known before, is that of
-    /// what it holds, which takes as long as writing it.
+    /// A table in memory, or its columns `fields`, in a format other than a picture. Without a known tag, its contents are hashed, which
+    /// takes as long as writing them.
     pub(crate) fn of_table(
         table: Table,
         fields: Option<&[String]>,
@@ -223,7 +220,7 @@ impl Answer {
         Ok(Self { head: Head::new(format, name, tag), content: Content::Table(table) })
     }
 
-    /// The same; a picture is drawn by `draw` from the whole table.
+    /// A table in memory, or a picture that `draw` makes from all of it.
     pub(crate) fn of_table_or_picture(
         table: Table,
         fields: Option<&[String]>,
@@ -241,7 +238,7 @@ impl Answer {
         Ok(Self { head: Head::new(format, name, tag), content: Content::Picture(picture) })
     }
 
-    /// A part of a stored table, in a format that is no picture.
+    /// A part of a stored table, in a format other than a picture.
     pub(crate) fn of_part(
         stored: Stored,
         part: Cut<StoredFile>,
@@ -263,14 +260,14 @@ impl Answer {
         }
     }
 
-    /// A picture of these bytes, for tests of what keeps pictures.
+    /// A picture of these bytes, for tests of the cache of pictures.
     #[cfg(test)]
     pub(crate) fn of_bytes(bytes: &str) -> Self {
         let head = Head::new(Format::Svg, "test", Tag::of(Format::Svg, &bytes));
         Self { head, content: Content::Picture(bytes.as_bytes().to_vec()) }
     }
 
-    /// Head that goes before the body.
+    /// Head of the body.
     pub(crate) fn head(&self) -> Head {
         self.head.clone()
     }
@@ -293,7 +290,7 @@ impl Answer {
     }
 }
 
-/// The columns of a table that are asked for.
+/// The requested columns of a table.
 pub(crate) fn select(table: Table, fields: Option<&[String]>) -> Result<Table> {
     let Some(fields) = fields else { return Ok(table) };
     let selected = table.select(fields);
@@ -312,70 +309,7 @@ fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<()
     }
 }
 
-/// Name that distinguishes this program from others that may write the same otherwise, of the same version too: the hash of its file. If
-/// that cannot be read, each start counts as a program of its own.
-static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
-    Ok(hash) => hash.to_hex().to_string(),
-    Err(error) => {
-        tracing::warn!(%error, "the program's file cannot be read: clients' copies hold until the next start only");
-        uuid::Uuid::now_v7().to_string()
-    }
-});
-
-fn hash_of_program() -> io::Result<blake3::Hash> {
-    let mut hasher = blake3::Hasher::new();
-    // What runs, where Linux tells: another file may have taken its path since it was started.
-    let file = File::open("/proc/self/exe").or_else(|_| File::open(std::env::current_exe()?))?;
-    hasher.update_reader(file)?;
-    Ok(hasher.finalize())
-}
-
-/// `ETag` of a body, a weak one, since it may be compressed on its way.
-#[derive(Debug, Clone)]
-pub(crate) struct Tag(String);
-
-impl Tag {
-    /// Of a body that depends on this alone besides its format and the program: the names of stored contents, and what is asked of
-    /// them. So it is known before the body is, which need not be made for a client that has it.
-    pub(crate) fn of(format: Format, depends_on: &impl Debug) -> Self {
-        let depends_on = (&*PROGRAM, format, depends_on);
-        Self::of_hash(&blake3::hash(format!("{depends_on:?}").as_bytes()))
-    }
-
-    fn of_hash(hash: &blake3::Hash) -> Self {
-        Self(format!("W/\"{}\"", hash.to_hex()))
-    }
-
-    /// Its text.
-    pub(crate) fn as_str(&self) -> &str {
-        &self.0
-    }
-
-    /// The answer to a client that says that it has a copy with this tag; none to one that does not. Who has any copy at all (`*`) does
-    /// not say that there is such an answer: making it shows that.
-    pub(crate) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
-        let known = headers.typed_get::<IfNoneMatch>().filter(|known| *known != IfNoneMatch::any())?;
-        let tag: ETag = self.0.parse().ok()?;
-        if known.precondition_passes(&tag) {
-            return None;
-        }
-        Some(self.on(StatusCode::NOT_MODIFIED.into_response()))
-    }
-
-    /// The response with what tells a client how long it may keep the body.
-    pub(crate) fn on(&self, mut response: Response) -> Response {
-        let headers = response.headers_mut();
-        if let Ok(tag) = self.0.parse() {
-            headers.insert(header::ETAG, tag);
-        }
-        // A point may be recomputed, and a sweep goes on; asking whether the copy is right costs little.
-        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
-        headers.insert(header::VARY, HeaderValue::from_static("accept"));
-        response
-    }
-}
-
-/// Head of a body: format, name for those who save it, and tag.
+/// Head of a body: format, file name, and tag.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
     format: Format,

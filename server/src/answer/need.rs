@@ -5,15 +5,15 @@ use crate::answer::error::Result;
 use crate::answer::format::{self, Format};
 use crate::answer::stored::Stored;
 
-/// Length of a file \[bytes\] from which on writing it in another format takes seconds.
+/// Length of a file from which writing it in another format takes seconds \[bytes\].
 const LONG: u64 = 1 << 20;
 
-/// Memory that a view of a result needs.
+/// Memory for a view of a result.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Need {
-    /// Bytes, but for the body on its way.
+    /// Memory without that of the body while it is sent \[bytes\].
     pub(crate) bytes: u64,
-    /// Held for long, as by a client that takes a long table slowly: answers that need little do not wait for it.
+    /// True if the memory is held for long, as by a long table on a slow line; answers that need little do not wait for it.
     pub(crate) is_long: bool,
 }
 
@@ -24,7 +24,7 @@ impl From<u64> for Need {
 }
 
 impl Need {
-    /// Memory for writing some columns of a stored table, or all of them, in a format: as CSV some rows at a time.
+    /// Memory for writing a stored table, or some of its columns; CSV is written some rows at a time.
     pub(crate) async fn of(stored: &Stored, format: Format, columns: Option<&[String]>) -> Result<Self> {
         if format != Format::Csv {
             return Ok(format.memory(stored.memory().await?).into());

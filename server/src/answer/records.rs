@@ -1,4 +1,4 @@
-//! Between what the store keeps and what clients see.
+//! Conversion between records of the store and types of the API.
 
 use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::VerifiedPoint;
@@ -18,10 +18,10 @@ use serde_json::{Map, Value};
 
 use crate::answer::error::{Error, Result};
 
-/// Owner, whose share a sweep counts against if its request names none.
+/// Owner of sweeps whose request names none.
 const DEFAULT_OWNER: &str = "default";
 
-/// A request and its points as the store takes them.
+/// A new sweep for the store, from a request and its expansion.
 pub(crate) fn new_sweep(
     request: &SweepRequest,
     expansion: &Expansion,
@@ -47,12 +47,12 @@ pub(crate) fn new_sweep(
     })
 }
 
-/// The reference runs that verify some points, as the store takes them.
+/// New reference runs for the store.
 pub(crate) fn new_verification(references: &Expansion) -> Result<NewVerification> {
     Ok(NewVerification { base_json: write(&references.base)?, runs: new_points(references)? })
 }
 
-/// The points of an expansion as the store takes them.
+/// New points for the store.
 pub(crate) fn new_points(expansion: &Expansion) -> Result<Vec<NewPoint>> {
     let new_point = |point: &SweepPoint| {
         Ok(NewPoint {
@@ -66,7 +66,7 @@ pub(crate) fn new_points(expansion: &Expansion) -> Result<Vec<NewPoint>> {
     expansion.points.iter().map(new_point).collect()
 }
 
-/// A sweep as clients see it, without its request.
+/// A sweep of the API without its request.
 pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
     let state = match (record.is_cancelled, record.finished) {
         (true, _) => SweepState::Cancelled,
@@ -118,7 +118,7 @@ fn counts(counts: &StateCounts) -> PointCounts {
     }
 }
 
-/// The same with the request that made it and those that added to it.
+/// A sweep of the API with its request and those that added points.
 pub(crate) fn sweep_with_requests(record: &SweepRecord, appended: &[String]) -> Result<Sweep> {
     let request = Some(Box::new(read(&record.request_json)?));
     let appended = appended.iter().map(|request| read(request)).collect::<Result<_>>()?;
@@ -150,7 +150,7 @@ pub(crate) fn failure(record: &FailureRecord) -> Result<Failure> {
     })
 }
 
-/// A point with everything but its tables.
+/// A point without its tables.
 pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String>) -> Result<PointDetail> {
     let Some(ScenarioText { base_json, changes_json }) = &record.scenario else {
         return Err(Error::internal("a point was read without its scenario"));
@@ -166,13 +166,13 @@ pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String
     })
 }
 
-/// Frequency up to which the steps of a point's run resolve vibrations \[Hz\]; absent of results that do not say.
+/// Frequency up to which the steps of a point's run resolve vibrations \[Hz\]; `None` if the result does not state it.
 pub(crate) fn resolved_hz(record: &PointRecord) -> Result<Option<f64>> {
     let summary: Option<Value> = record.summary_json.as_deref().map(read).transpose()?;
     Ok(summary.and_then(|summary| summary.get("resolved_hz")?.as_f64()))
 }
 
-/// A point beside the reference run that verifies it.
+/// A point with the reference run that verifies it.
 pub(crate) fn verified_point(record: &VerificationRecord) -> Result<VerifiedPoint> {
     Ok(VerifiedPoint {
         ordinal: ordinal(record.ordinal)?,
@@ -184,7 +184,7 @@ pub(crate) fn verified_point(record: &VerificationRecord) -> Result<VerifiedPoin
     })
 }
 
-/// A point's row in the table of its sweep, without what verifying it has shown; its summary is taken.
+/// A point's row in the table of its sweep, without biases; its summary is moved.
 pub(crate) fn point_summary(record: &mut TableRecord) -> Result<PointSummary> {
     Ok(PointSummary {
         ordinal: ordinal(record.ordinal)?,
@@ -201,7 +201,7 @@ pub(crate) fn parameters(json: &str) -> Result<IndexMap<String, f64>> {
     read(json)
 }
 
-/// The state of a point from that of the work behind it.
+/// State of a point, from that of its work item.
 pub(crate) fn point_state(state: WorkState) -> PointState {
     match state.stage() {
         Stage::Queued => PointState::Queued,
@@ -212,12 +212,12 @@ pub(crate) fn point_state(state: WorkState) -> PointState {
     }
 }
 
-/// The states of work that make up a state of points.
+/// States of work items that are one state of points.
 pub(crate) fn work_states(state: PointState) -> Vec<WorkState> {
     WorkState::ALL.into_iter().filter(|work| point_state(*work) == state).collect()
 }
 
-/// Why a point failed. A text of another form than the workers' comes through as the reason.
+/// Error of a failed point; a text of another form than that of workers becomes the reason.
 fn point_error(state: WorkState, text: &str) -> PointError {
     serde_json::from_str(text).unwrap_or_else(|_| PointError {
         class: match state {
@@ -231,7 +231,7 @@ fn point_error(state: WorkState, text: &str) -> PointError {
     })
 }
 
-/// The problem that a sweep has no such point, or that there is no such sweep.
+/// Problem of a point, or its sweep, that does not exist.
 pub(crate) async fn no_such_point(store: &Store, sweep: &str, n: u32) -> Result<Error> {
     Ok(match store.sweep(sweep).await? {
         None => no_such_sweep(sweep),
@@ -243,7 +243,7 @@ pub(crate) async fn no_such_point(store: &Store, sweep: &str, n: u32) -> Result<
     })
 }
 
-/// The problem that there is no such sweep.
+/// Problem of a sweep that does not exist.
 pub(crate) fn no_such_sweep(id: &str) -> Error {
     Error::new(ProblemKind::NotFound, format!("there is no sweep {id}"))
 }

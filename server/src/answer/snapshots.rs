@@ -1,4 +1,4 @@
-//! Snapshots of a whole string as they are stored: when they were taken, and what they tell of one node.
+//! Stored snapshots of a string: their times, and the motion of single nodes.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ use crate::answer::error::{Error, Result};
 use crate::answer::format;
 use crate::answer::stored::{Stored, StoredFile};
 
-/// The stored snapshots of a string of so many nodes.
+/// Stored snapshots of a string, with its number of nodes.
 pub(crate) struct Snapshots {
     stored: Stored,
     nodes: usize,
 }
 
 impl Snapshots {
-    /// Those in a table that has a row a node, from the top, snapshot after snapshot; `statics` has a row for each node of the string.
+    /// Snapshots of a table with a row a node, from the top, snapshot after snapshot; `statics` has a row for each node of the string.
     ///
     /// # Errors
     /// When there are no snapshots of so many nodes in the table.
@@ -37,7 +37,7 @@ impl Snapshots {
         &self.stored
     }
 
-    /// The same, for who needs nothing else of them.
+    /// The table, by value.
     pub(crate) fn into_stored(self) -> Stored {
         self.stored
     }
@@ -47,12 +47,12 @@ impl Snapshots {
         usize::try_from(self.stored.rows()).unwrap_or(usize::MAX) / self.nodes
     }
 
-    /// The number of nodes, which are the rows of a snapshot.
+    /// Number of nodes: the rows of a snapshot.
     pub(crate) fn nodes(&self) -> usize {
         self.nodes
     }
 
-    /// When they were taken; read by a thread that may wait.
+    /// Times of the snapshots \[s\]. Blocks.
     pub(crate) fn times(&self, table: &StoredTable<StoredFile>) -> Result<SnapshotTimes> {
         let rows = table.rows();
         let time = |row: usize| {
@@ -66,10 +66,10 @@ impl Snapshots {
         Ok(SnapshotTimes { first, last, count: rows / self.nodes })
     }
 
-    /// Of some snapshots every `stride`-th, with all nodes or with the one of this number, in the columns of `layout`.
+    /// Every `stride`-th of a range of snapshots, with all nodes or one, in the columns of `layout`.
     ///
     /// # Errors
-    /// When a column of `layout` is none of the `table`'s.
+    /// A column of `layout` is not in the `table`.
     pub(crate) fn part(
         &self,
         table: StoredTable<StoredFile>,
@@ -86,8 +86,8 @@ impl Snapshots {
         })
     }
 
-    /// Time and these columns of the lowest node, in the half-open window \[from, to) \[s\], of at most so many snapshots; none where a
-    /// column is missing. Read by a thread that may wait.
+    /// Time and columns of the lowest node in the half-open window \[from, to) \[s\], of at most `most` snapshots; `None` if a column is
+    /// missing. Blocks.
     pub(crate) fn of_lowest_node(
         &self,
         columns: &[&str],

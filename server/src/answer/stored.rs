@@ -1,4 +1,4 @@
-//! A table of a result where it lies: read in verified ranges, computed again where storage has lost it.
+//! Stored tables: read in verified ranges, and recomputed if storage has lost them.
 
 use std::io;
 use std::ops::Range;
@@ -13,18 +13,17 @@ use drillsweep_table::{Table, TableError};
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
-use crate::answer::chunk::{self, Chunk};
+use crate::answer::chunk::{self, Allowance, Chunk};
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::Eviction;
 use crate::answer::records;
 
-/// Bytes of a file that are read, verified and sent at once: what storage verifies as one.
+/// Length of the ranges in which files are read, verified and sent \[bytes\]: the unit of verification of the store.
 const STRETCH: u64 = 256 << 10;
 
-/// Bytes of memory that sending a file as it is stored takes: a stretch on its way, and the next one.
+/// Memory for sending a stored file \[bytes\]: a range that is sent, and the next one.
 pub(crate) const MEMORY_OF_FILE: u64 = 2 * STRETCH;
 
-/// One table of a point's result, of which nothing is in memory.
+/// A table of a result; nothing of it is in memory.
 #[derive(Clone)]
 pub(crate) struct Stored {
     store: Store,
@@ -34,14 +33,14 @@ pub(crate) struct Stored {
     file: StoredFile,
 }
 
-/// Its file, for a thread that may wait.
+/// File of a table, for blocking reads.
 #[derive(Clone)]
 pub(crate) struct StoredFile {
     blobs: BlobStore,
     blob: BlobId,
     length: u64,
     handle: Handle,
-    /// Why it could not be read: Parquet's errors do not tell.
+    /// Error of the last failed read, which Parquet's errors do not carry.
     failure: Arc<Mutex<Option<StoreError>>>,
 }
 
@@ -60,7 +59,7 @@ impl ReadAt for StoredFile {
 }
 
 impl Stored {
-    /// A table that a result has, unless it has reached its age.
+    /// A table of a result, unless it has expired.
     pub(crate) fn new(store: &Store, key: &WorkKey, artifact: Artifact) -> Result<Self> {
         check_age(&artifact)?;
         let file = StoredFile {
@@ -74,7 +73,7 @@ impl Stored {
         Ok(Self { store: store.clone(), key: *key, name: artifact.name, rows, file })
     }
 
-    /// The name of its content.
+    /// Hash of its contents.
     pub(crate) fn blob(&self) -> BlobId {
         self.file.blob
     }
@@ -89,18 +88,18 @@ impl Stored {
         self.rows
     }
 
-    /// Bytes of memory that it takes to read it a piece at a time.
+    /// Memory for reading it piece by piece \[bytes\].
     pub(crate) async fn memory(&self) -> Result<u64> {
         self.memory_of(u64::MAX).await
     }
 
-    /// Bytes of memory that it takes to read so many of its columns a piece at a time.
+    /// Memory for reading so many of its columns piece by piece \[bytes\].
     pub(crate) async fn memory_of(&self, columns: u64) -> Result<u64> {
         let end = self.range(self.length().saturating_sub(parquet::FOOTER_END)..self.length()).await?;
         Ok(parquet::memory(self.length(), &end, self.rows, columns))
     }
 
-    /// All bytes of a file that is known to be small.
+    /// All bytes, of a small file.
     pub(crate) async fn whole(&self) -> Result<Bytes> {
         match self.file.blobs.get(self.file.blob).await {
             Ok(bytes) => Ok(bytes),
@@ -116,7 +115,7 @@ impl Stored {
         }
     }
 
-    /// Reads all of it without keeping it.
+    /// Verifies all bytes.
     pub(crate) async fn verify(&self) -> Result<()> {
         match self.file.blobs.verify(self.file.blob).await {
             Ok(_) => Ok(()),
@@ -134,26 +133,27 @@ impl Stored {
         })
     }
 
-    /// A body of a range of the bytes, which are read as the client takes them. The first of them are read before there is one, so that
-    /// what is damaged there is a problem. What is damaged further on breaks it off. One that is read at once takes no place that others
-    /// could hold up; any other asks for its place, which it has to its end.
+    /// A body of a range of the bytes, read as the client takes them. The first bytes are read before the answer begins, so that damage
+    /// there is a problem; damage further on breaks the body off. A range that is read at once takes no place; any other holds its place to
+    /// its end.
     pub(crate) async fn body<H: Send + 'static>(
         self,
         range: Range<u64>,
-        place: impl Future<Output = Result<(H, Eviction)>>,
+        place: impl Future<Output = Result<(H, Allowance)>>,
     ) -> Result<Body> {
         let mut stretches = Self::stretches(range).peekable();
         let Some(first) = stretches.next() else { return Ok(Body::empty()) };
         if stretches.peek().is_none() {
             return Ok(self.range(first).await?.into());
         }
-        let (held, mut eviction) = place.await?;
+        let (held, mut allowance) = place.await?;
         let first = Chunk::One(self.range(first).await?);
         let (sender, receiver) = mpsc::channel(1);
         tokio::spawn(async move {
             let _held = held;
             while let Some(stretch) = stretches.next() {
-                let Some(room) = chunk::room(&sender, &mut eviction).await else { return };
+                let bytes = (stretch.end - stretch.start) as usize;
+                let Some(room) = allowance.room(&sender, bytes).await else { return };
                 let next = match self.range(stretch).await {
                     Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
                     Ok(bytes) => Ok(Chunk::One(bytes)),
@@ -161,7 +161,7 @@ impl Stored {
                 };
                 let is_broken = next.is_err();
                 room.send(next);
-                if is_broken || stretches.peek().is_some() && eviction.is_due(Duration::ZERO) {
+                if is_broken {
                     return;
                 }
             }
@@ -169,12 +169,12 @@ impl Stored {
         Ok(chunk::body(Some(first), receiver))
     }
 
-    /// The table, to be read in parts by a thread that may wait.
+    /// The table for reads of its parts. Blocks.
     pub(crate) fn open(&self) -> Result<StoredTable<StoredFile>> {
         StoredTable::open(self.file.clone()).map_err(|error| self.problem(error))
     }
 
-    /// Some columns, or all of them, of all rows, with numbers in double precision; read by a thread that may wait.
+    /// Some columns, or all of them, of all rows, with numbers in double precision. Blocks.
     pub(crate) fn read(&self, columns: Option<&[&str]>) -> Result<Table> {
         let stored = self.open()?;
         let all: Vec<&str> = stored.layout().columns.keys().map(String::as_str).collect();
@@ -182,7 +182,7 @@ impl Stored {
         Ok(table.map_err(|error| self.problem(error))?.widened())
     }
 
-    /// Problem of a part that a thread could not read. If storage has lost it, its point is computed again, and the problem reports that.
+    /// Problem of a failed read. If storage has lost the table, its point is queued again, and the problem reports that. Blocks.
     pub(crate) fn problem(&self, error: TableError) -> Error {
         let failure = self.file.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
         match failure {
@@ -203,7 +203,7 @@ impl Stored {
     }
 }
 
-/// Refuses a table that has reached its age.
+/// Refuses an expired table.
 pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
     let Some(expired) = artifact.expired else { return Ok(()) };
     let detail = format!(
@@ -214,10 +214,10 @@ pub(crate) fn check_age(artifact: &Artifact) -> Result<()> {
     Err(Error::new(ProblemKind::Expired, detail))
 }
 
-/// Wait that a reader of a table is advised whose point is computed again: a run takes minutes.
+/// Retry-After of a table whose point is computed again: a run takes minutes.
 const RECOMPUTING: Duration = Duration::from_secs(30);
 
-/// The problem that a table is lost, with what becomes of it.
+/// Problem of a lost table, with its repair.
 fn damaged(name: &str, repair: Repair) -> Error {
     let is_lost = format!("the table {name} is lost or was changed in storage, and nothing of it is served");
     let consequence = match repair {
@@ -226,7 +226,7 @@ fn damaged(name: &str, repair: Repair) -> Error {
             return Error::temporary(ProblemKind::Recomputing, detail, RECOMPUTING);
         }
         Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
-                                submit it again to have another try"
+                                submit it again to retry"
             .to_owned(),
         Repair::OtherNumbers(version) => format!(
             "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \

@@ -1,16 +1,16 @@
-//! Memory for the bodies of requests, from their first byte until the work on them has ended.
+//! Memory for the bodies of requests, held from their first byte until the work on them has ended.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::app::metrics::Occupancy;
 
-/// Bytes of a body that are not counted: as many as there are connections take little.
+/// Bytes of a body that are not counted, since those of all connections take little.
 pub(crate) const SMALL: usize = 16 << 10;
 
 /// Memory for bodies.
 pub(crate) struct Bodies {
-    /// All of it, and the part that one owner may have \[bytes\].
+    /// All memory, and the share of one owner \[bytes\].
     all: usize,
     of_owner: usize,
     state: Mutex<State>,
@@ -36,7 +36,7 @@ impl Bodies {
         Arc::new(Self { all, of_owner: all / 2, state: Mutex::default() })
     }
 
-    /// No memory yet, for a body of this owner.
+    /// Memory of a body of this owner, of no bytes yet.
     pub(crate) fn begin(self: &Arc<Self>, owner: &str) -> BodyMemory {
         BodyMemory { bodies: self.clone(), owner: owner.to_owned(), bytes: 0 }
     }

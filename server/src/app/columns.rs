@@ -1,14 +1,14 @@
-//! Columns of sweeps' tables that were found: for that, the results of all points are read.
+//! Cache of the columns of sweeps' tables, which are found by reading the results of all points.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use drillsweep_api::ColumnList;
 
-/// Sweeps whose columns are kept: some kilobytes each.
+/// Sweeps whose columns are kept, of some kilobytes each.
 const MOST: usize = 64;
 
-/// The columns of the sweeps that were asked about last.
+/// Columns of the sweeps that were requested last.
 #[derive(Debug, Default)]
 pub(crate) struct KnownColumns(Mutex<VecDeque<Known>>);
 
@@ -20,14 +20,14 @@ struct Known {
 }
 
 impl KnownColumns {
-    /// Columns of a sweep, if it has this version still.
+    /// Columns of a sweep at this version, if they are kept.
     pub(crate) fn get(&self, sweep: &str, version: i64) -> Option<ColumnList> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let found = known.iter().find(|known| known.sweep == sweep && known.version == version)?;
         Some(found.columns.clone())
     }
 
-    /// Keeps those of a sweep, in the place of others that were kept first.
+    /// Keeps the columns of a sweep in place of the oldest ones.
     pub(crate) fn put(&self, sweep: String, version: i64, columns: ColumnList) {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.retain(|known| known.sweep != sweep);

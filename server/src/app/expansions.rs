@@ -1,5 +1,5 @@
-//! Expansions and plans of sweeps: places shared fairly between owners, each with memory, a deadline of processor time, and an end when
-//! its client leaves or the service stops.
+//! Admission control for expansions and plans of sweeps: places shared fairly between owners, each with memory, a limit on processor time,
+//! and an end when its client leaves or the service stops.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,7 @@ use crate::app::metrics::Occupancy;
 /// Longest wait for a place.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Wait after which the oldest request is next, whatever else would fit.
+/// Wait after which the oldest request is next, even if others would fit.
 const LONG: Duration = Duration::from_secs(5);
 
 /// Retry-After of a refused request.
@@ -27,11 +27,11 @@ const ADVICE: Duration = Duration::from_secs(2);
 /// Sizes of the places for expansions.
 #[derive(Debug, Clone)]
 pub struct ExpansionLimits {
-    /// Expansions that compute at once. Of two and more one owner has half at most.
+    /// Expansions that compute at once; if there are two or more, one owner has at most half.
     pub at_once: usize,
-    /// Memory that all take together \[bytes\].
+    /// Memory of all expansions together \[bytes\].
     pub bytes: usize,
-    /// Requests that wait; further ones are refused. One owner has a quarter of these places.
+    /// Requests that wait, a quarter of them of one owner; further ones are refused.
     pub waiting: usize,
     /// Processor time of one expansion, to which that of its points is added.
     pub deadline: Duration,
@@ -99,10 +99,11 @@ impl Expansions {
         Arc::new(Self { limits, stopping, state: Mutex::new(state) })
     }
 
-    /// Takes a place of `bytes`, or of all memory if there is less, in the order of arrival among those of the owners that compute least.
+    /// Takes a place of `bytes`, or of all memory if there is less, in order of arrival among the owners with the fewest computing
+    /// requests.
     ///
     /// # Errors
-    /// Too many requests wait, of all owners (503) or of this one (429), or none of the places has become free in time (503).
+    /// Too many requests wait, of all owners (503) or of this one (429), or no place has become free in time (503).
     pub(crate) async fn enter(self: &Arc<Self>, owner: &str, bytes: usize) -> Result<Place> {
         let (wake, woken) = oneshot::channel();
         self.queue(owner, bytes, wake)?;
@@ -135,7 +136,7 @@ impl Expansions {
         Ok(())
     }
 
-    /// Gives places to those who wait, as long as there are any.
+    /// Gives free places to waiting requests.
     fn admit(self: &Arc<Self>) {
         loop {
             let next = {
@@ -148,7 +149,7 @@ impl Expansions {
                 turn: Turn { expansions: self.clone(), owner },
                 memory: Memory { expansions: self.clone(), bytes },
             };
-            // A client that has left gives its place back, which admits the next.
+            // If the client has left, its place is dropped, which admits the next.
             let _ = wake.send(place);
         }
     }
@@ -200,7 +201,7 @@ impl State {
         let fits = |waiter: &Waiter| waiter.bytes <= self.free;
         let is_due = |waiter: &&Waiter| has_turn(waiter) && waiter.since.elapsed() > LONG;
         let due = self.waiting.iter().find(is_due).map(|due| due.since);
-        // Requests without memory of their own have that of an earlier place, which the oldest may wait for.
+        // Requests without memory hold that of an earlier place, for which the oldest may wait.
         let may_pass = |waiter: &Waiter| due.is_none_or(|due| waiter.since <= due) || waiter.bytes == 0;
         let ready = self.waiting.iter().enumerate();
         let ready = ready.filter(|(_, waiter)| has_turn(waiter) && fits(waiter) && may_pass(waiter));
@@ -217,7 +218,7 @@ impl State {
     }
 }
 
-/// Changes the counts of an owner, who is forgotten without any.
+/// Changes the counts of an owner, and removes them once they are 0.
 fn change(owners: &mut HashMap<String, Owner>, name: &str, change: impl FnOnce(&mut Owner)) {
     if let Some(owner) = owners.get_mut(name) {
         change(owner);
@@ -228,7 +229,7 @@ fn change(owners: &mut HashMap<String, Owner>, name: &str, change: impl FnOnce(&
 }
 
 impl Place {
-    /// Runs work on a thread of its own, which has the turn until its end. What it returns has the memory, until that is dropped.
+    /// Runs work on a separate thread, which holds the turn until its end, and returns the memory.
     ///
     /// # Errors
     /// Errors of the work.
@@ -316,7 +317,7 @@ impl Work {
     /// Ends the work if its client has left, the service stops or its processor time is over.
     ///
     /// # Errors
-    /// The problem that the client is answered, if it is still there.
+    /// The problem to answer with.
     pub(crate) fn check(&self) -> Result<(), Box<ProblemDetails>> {
         let end = |kind, detail: String| Err(Box::new(ProblemDetails::new(kind, detail)));
         if self.has_left.load(Ordering::Relaxed) {
@@ -346,7 +347,7 @@ mod tests {
     use super::*;
 
     fn expansions(at_once: usize, bytes: usize, waiting: usize) -> Arc<Expansions> {
-        // Without a sender the last value stays.
+        // Without a sender the last value remains.
         let (_, stopping) = watch::channel(false);
         let limits = ExpansionLimits { at_once, bytes, waiting, deadline: Duration::from_millis(20) };
         Expansions::new(limits, stopping)
@@ -381,7 +382,7 @@ mod tests {
         for _ in 0..10 {
             own.push(waiting(&expansions, "a", 1).await);
         }
-        // The eleventh is one too many of this owner, not of others.
+        // The eleventh is too many for this owner, and not for others.
         assert_eq!(status(expansions.enter("a", 1).await), 429);
         let other = expansions.enter("b", 1).await.map_err(Error::into_problem).expect("a turn");
         drop((first, other));
@@ -400,7 +401,7 @@ mod tests {
         let other = expansions.enter("c", 40).await.map_err(Error::into_problem).expect("a turn");
         let work = |work: &mut Work| Ok([work.grow(61), work.grow(20), work.grow(60), work.grow(201)]);
         let (grown, memory) = place.run(work).await.map_err(Error::into_problem).expect("it ends");
-        // With all memory at most, which is not free.
+        // At most all memory, which is not free.
         assert_eq!((grown, expansions.measure().held), ([false, true, true, false], 100));
         drop(other);
         let other = waiting(&expansions, "b", 70).await;

@@ -1,8 +1,8 @@
-//! Work that takes cores and memory for a while: as much at once as there is, some more that waits, and what is beyond told to come back.
+//! Admission control for large answers: weighted semaphores of memory, with a bounded queue.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use axum::response::Response;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
@@ -10,18 +10,18 @@ use tokio::time::timeout;
 
 use crate::answer::blocking::{beside, blocking};
 use crate::answer::body;
+use crate::answer::chunk::Allowance;
 use crate::answer::error::{Error, Result};
-use crate::answer::eviction::{Eviction, Queue};
 use crate::answer::format::Answer;
 use crate::app::metrics::Occupancy;
 
-/// How long a request waits for its turn.
+/// Longest wait of a request for its place.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The longest that a refused client is told to stay away; places may be free long before.
-const LONGEST_ADVICE: Duration = Duration::from_secs(60);
+/// Retry-After of a refused request.
+const ADVICE: Duration = Duration::from_secs(5);
 
-/// Memory, or places, for one kind of work. Requests that need none are not held up by those that do.
+/// A weighted semaphore for one kind of work.
 pub(crate) struct Lane {
     units: Arc<Semaphore>,
     all: usize,
@@ -29,53 +29,20 @@ pub(crate) struct Lane {
     all_waiting: usize,
     refused: AtomicU64,
     turns: Arc<Semaphore>,
-    pace: Arc<Pace>,
-    queue: Arc<Queue>,
+    allowance: Duration,
 }
 
-/// Memory or a place, until it is dropped.
+/// Units of a lane, held until this is dropped.
 pub(crate) struct Place {
-    held: Held,
+    permit: OwnedSemaphorePermit,
     turns: Arc<Semaphore>,
-    eviction: Eviction,
-}
-
-struct Held {
-    _permit: OwnedSemaphorePermit,
-    since: Instant,
-    pace: Arc<Pace>,
-}
-
-impl Drop for Held {
-    fn drop(&mut self) {
-        self.pace.note(self.since.elapsed());
-    }
-}
-
-/// How long work has lasted lately \[ms\], as a mean that forgets.
-#[derive(Default)]
-struct Pace(AtomicU64);
-
-impl Pace {
-    fn note(&self, lasted: Duration) {
-        /// The part of the latest in the mean is one of so many.
-        const MEMORY: u64 = 4;
-        let lasted = u64::try_from(lasted.as_millis()).unwrap_or(u64::MAX);
-        // One that is lost to another that ends at the same time changes no advice.
-        let mean = self.0.load(Ordering::Relaxed);
-        self.0.store(mean - mean / MEMORY + lasted / MEMORY, Ordering::Relaxed);
-    }
-
-    /// When a place is likely to be free again.
-    fn advice(&self) -> Duration {
-        Duration::from_millis(self.0.load(Ordering::Relaxed)).clamp(Duration::from_secs(1), LONGEST_ADVICE)
-    }
+    allowance: Duration,
 }
 
 impl Lane {
-    /// A lane for work that takes so many units together, of which so much computes at once, and so many requests that wait; after
-    /// `grace` answers whose clients are slow are evicted for them.
-    pub(crate) fn new(units: usize, at_once: usize, waiting: usize, grace: Duration) -> Self {
+    /// A lane of `units`, with `at_once` threads that compute and at most `waiting` requests in the queue. A client may keep its answer
+    /// waiting for `allowance`.
+    pub(crate) fn new(units: usize, at_once: usize, waiting: usize, allowance: Duration) -> Self {
         Self {
             units: Arc::new(Semaphore::new(units)),
             all: units,
@@ -83,29 +50,27 @@ impl Lane {
             all_waiting: waiting,
             refused: AtomicU64::new(0),
             turns: Arc::new(Semaphore::new(at_once.max(1))),
-            pace: Arc::default(),
-            queue: Queue::new(grace),
+            allowance,
         }
     }
 
-    /// Takes so many units, or where there are fewer all of them, if they are free and nobody waits for them.
+    /// Takes units, or all if there are fewer, if they are free and no request waits for them.
     pub(crate) fn try_enter(&self, units: usize) -> Option<Place> {
         let permit = self.units.clone().try_acquire_many_owned(self.bounded(units)).ok()?;
         Some(self.place(permit))
     }
 
-    /// Takes so many units, or where there are fewer all of them, in the order of arrival. To be taken before anything large is loaded.
+    /// Takes units, or all if there are fewer, in order of arrival. Call it before loading anything large.
     pub(crate) async fn enter(&self, units: usize) -> Result<Place> {
         if let Some(place) = self.try_enter(units) {
             return Ok(place);
         }
         let too_many = || {
             self.refused.fetch_add(1, Ordering::Relaxed);
-            let reason = "more large answers are asked for than can be computed at once";
-            Error::unavailable_for(reason, self.pace.advice())
+            let reason = "more large answers are requested than can be computed at once";
+            Error::unavailable_for(reason, ADVICE)
         };
         let _waiting = self.waiting.try_acquire().map_err(|_| too_many())?;
-        let _queued = self.queue.wait();
         match timeout(PATIENCE, self.units.clone().acquire_many_owned(self.bounded(units))).await {
             Ok(Ok(permit)) => Ok(self.place(permit)),
             // The semaphore is never closed.
@@ -113,7 +78,7 @@ impl Lane {
         }
     }
 
-    /// Counts for the metrics, of units of `bytes` each.
+    /// Counts for the metrics; a unit has `bytes`.
     pub(crate) fn measure(&self, bytes: usize) -> Occupancy {
         Occupancy {
             held: (self.all.saturating_sub(self.units.available_permits()) * bytes) as u64,
@@ -127,21 +92,17 @@ impl Lane {
     }
 
     fn place(&self, permit: OwnedSemaphorePermit) -> Place {
-        Place {
-            held: Held { _permit: permit, since: Instant::now(), pace: self.pace.clone() },
-            turns: self.turns.clone(),
-            eviction: Eviction::of(&self.queue),
-        }
+        Place { permit, turns: self.turns.clone(), allowance: self.allowance }
     }
 }
 
 impl Place {
-    /// Runs the work on a thread of its own and gives the place back.
+    /// Runs work on a separate thread and gives the place back.
     pub(crate) async fn run<T: Send + 'static>(
         self,
         work: impl FnOnce() -> Result<T> + Send + 'static,
     ) -> Result<T> {
-        // Also where nobody waits for the answer any more: the work goes on to its end, and has its place until then.
+        // The work continues to its end after its client has left, and holds its place until then.
         blocking(move || {
             let _place = self;
             work()
@@ -149,7 +110,7 @@ impl Place {
         .await
     }
 
-    /// Makes an answer on a thread of its own when it is its turn, and gives the place back.
+    /// Makes an answer on a separate thread in its turn, and gives the place back.
     pub(crate) async fn make(
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
@@ -159,23 +120,23 @@ impl Place {
         let (sender, receiver) = oneshot::channel();
         beside(move || {
             let _held = (self, turn);
-            // A client that has left needs no answer.
+            // An error means that the client has left.
             let _ = sender.send(prepare());
         })?;
         receiver.await.map_err(|_| Error::internal("the thread that makes an answer has ended"))?
     }
 
-    /// Writes an answer on a thread of its own while it is sent, and gives the place back at its end.
+    /// Writes an answer on a separate thread while it is sent, and gives the place back at its end.
     pub(crate) async fn answer(
         self,
         prepare: impl FnOnce() -> Result<Answer> + Send + 'static,
     ) -> Result<Response> {
-        body::send(self.turns, self.eviction, self.held, prepare).await
+        body::send(self.turns, Allowance::new(self.allowance), self.permit, prepare).await
     }
 
-    /// Guard that holds the place, and its eviction, for a body that is written otherwise.
-    pub(crate) fn into_parts(self) -> (impl Send + 'static, Eviction) {
-        (self.held, self.eviction)
+    /// Guard that holds the place, and allowance of its client, for a body that is written otherwise.
+    pub(crate) fn into_parts(self) -> (impl Send + 'static, Allowance) {
+        (self.permit, Allowance::new(self.allowance))
     }
 }
 
@@ -183,11 +144,11 @@ impl Place {
 mod tests {
     use super::*;
 
-    const GRACE: Duration = Duration::from_secs(10);
+    const ALLOWANCE: Duration = Duration::from_secs(10);
 
     #[tokio::test]
     async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
-        let lane = Arc::new(Lane::new(1, 1, 1, GRACE));
+        let lane = Arc::new(Lane::new(1, 1, 1, ALLOWANCE));
         let first = lane.enter(1).await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
             let lane = lane.clone();
@@ -206,7 +167,7 @@ mod tests {
 
     #[tokio::test]
     async fn work_takes_what_it_needs_and_at_most_all_there_is() {
-        let lane = Lane::new(10, 1, 0, GRACE);
+        let lane = Lane::new(10, 1, 0, ALLOWANCE);
         let small = lane.enter(3).await.map_err(Error::into_problem).expect("there is room");
         let other = lane.enter(7).await.map_err(Error::into_problem).expect("there is just room");
         assert!(lane.enter(1).await.is_err());
@@ -215,21 +176,5 @@ mod tests {
         assert!(lane.enter(1).await.is_err());
         drop(all);
         assert_eq!(lane.units.available_permits(), 10);
-    }
-
-    #[test]
-    fn who_is_refused_is_told_to_come_back_when_work_of_late_would_have_ended() {
-        let pace = Pace::default();
-        assert_eq!(pace.advice(), Duration::from_secs(1), "before anything has ended");
-        for _ in 0..40 {
-            pace.note(Duration::from_secs(11));
-        }
-        assert_eq!(pace.advice().as_secs_f64().round(), 11.0);
-        pace.note(Duration::from_secs(7_000));
-        assert_eq!(pace.advice(), LONGEST_ADVICE);
-        for _ in 0..80 {
-            pace.note(Duration::from_millis(20));
-        }
-        assert_eq!(pace.advice(), Duration::from_secs(1), "as it was before");
     }
 }

@@ -11,11 +11,11 @@ use crate::answer::error::{Error, Result};
 /// Limits of one owner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OwnerLimits {
-    /// Requests a second, over longer times.
+    /// Requests a second in the long run.
     pub requests_per_second: NonZeroU32,
-    /// Requests at once after a rest.
+    /// Requests at once after a pause.
     pub request_burst: NonZeroU32,
-    /// Points that wait or run.
+    /// Points that are queued or running.
     pub open_points: u64,
 }
 
@@ -31,7 +31,7 @@ impl Default for OwnerLimits {
     }
 }
 
-/// Counts the requests of each owner.
+/// Rate limiter of requests by owner.
 pub(crate) struct RequestLimiter {
     limiter: DefaultKeyedRateLimiter<String>,
     clock: DefaultClock,

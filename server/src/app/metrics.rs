@@ -17,7 +17,7 @@ use crate::answer::error::Result;
 use crate::exposition::Exposition;
 use crate::listen::ConnectionCounts;
 
-/// Upper ends \[s\] of the ranges in which requests are counted by their duration.
+/// Upper bounds of the buckets of request durations \[s\].
 const REQUEST_SECONDS: [f64; 10] = [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.5, 2.0, 10.0];
 
 /// Use of a bounded resource.
@@ -37,7 +37,7 @@ pub(crate) struct Metrics {
     requests: Family<RequestLabels, Histogram>,
     streams: Gauge,
     pub(crate) connections: ConnectionCounts,
-    /// Tokens that were not valid.
+    /// Refused tokens.
     pub(crate) refused_tokens: Counter,
     throttled: Family<OwnerLabel, Counter>,
     collections: Family<OutcomeLabel, Counter>,
@@ -72,7 +72,7 @@ struct LaneLabel {
     lane: &'static str,
 }
 
-/// Use of what requests wait for.
+/// Gauges of the use of bounded resources.
 #[derive(Default)]
 struct LaneMetrics {
     held: Family<LaneLabel, Gauge>,
@@ -84,12 +84,16 @@ impl LaneMetrics {
     fn register(&self, registry: &mut Registry) {
         registry.register_with_unit(
             "lane_held",
-            "Memory that requests hold, by what they hold it for",
+            "Memory held by requests, by use",
             Unit::Bytes,
             self.held.clone(),
         );
-        registry.register("lane_waiting", "Requests that wait for such memory", self.waiting.clone());
-        registry.register("lane_refused", "Requests refused for lack of such memory", self.refused.clone());
+        registry.register("lane_waiting", "Requests that wait for memory, by use", self.waiting.clone());
+        registry.register(
+            "lane_refused",
+            "Requests refused for lack of memory, by use",
+            self.refused.clone(),
+        );
     }
 
     fn set(&self, lanes: &[(&'static str, Occupancy)]) {
@@ -102,7 +106,7 @@ impl LaneMetrics {
     }
 }
 
-/// Gauges of what the database knows, read when they are requested.
+/// Gauges of the contents of the database, read on request.
 #[derive(Default)]
 struct CensusGauges {
     work: Family<StateLabel, Gauge>,
@@ -126,7 +130,7 @@ impl Metrics {
             Family::<RequestLabels, Histogram>::new_with_constructor(|| Histogram::new(REQUEST_SECONDS));
         let streams = Gauge::default();
         let (lanes, census) = (LaneMetrics::default(), CensusGauges::default());
-        registry.register("event_streams", "Event streams that are open", streams.clone());
+        registry.register("event_streams", "Open event streams", streams.clone());
         registry.register_with_unit(
             "http_request_duration",
             "Time from a request's headers to its answer's headers, by route",
@@ -134,10 +138,10 @@ impl Metrics {
             requests.clone(),
         );
         let connections = ConnectionCounts::default();
-        registry.register("connections", "Connections that are open", connections.open.clone());
+        registry.register("connections", "Open connections", connections.open.clone());
         registry.register(
             "connections_refused",
-            "Connections that were closed at once, as beyond the limits",
+            "Connections refused beyond the limits",
             connections.refused.clone(),
         );
         let refused_tokens = Counter::default();
@@ -149,7 +153,7 @@ impl Metrics {
         let throttled = Family::<OwnerLabel, Counter>::default();
         registry.register("throttled", "Requests beyond the rate of their owner", throttled.clone());
         let collections = Family::<OutcomeLabel, Counter>::default();
-        // An alert on an increase needs the zero before it.
+        // An alert on an increase needs a preceding zero.
         for outcome in ["succeeded", "failed"] {
             drop(collections.get_or_create(&OutcomeLabel { outcome }));
         }
@@ -191,7 +195,7 @@ impl Metrics {
         self.collections.get_or_create(&OutcomeLabel { outcome }).inc();
     }
 
-    /// Everything that is counted, with what the database knows, the number of event streams that are open, and the use of lanes.
+    /// All metrics, with the contents of the database, the number of open event streams, and the use of lanes.
     pub(crate) fn text(
         &self,
         census: &Census,
@@ -230,12 +234,12 @@ impl CensusGauges {
         );
         registry.register(
             "results_that_disagree",
-            "Results that were recomputed and differ from the earlier ones; 0 where all is well",
+            "Results that were recomputed and differ from the earlier ones; normally 0",
             self.disagreements.clone(),
         );
         registry.register_with_unit(
             "artifacts",
-            "Size of the tables of all results, those that are shared counted each time",
+            "Size of the tables of all results; shared ones count each time",
             Unit::Bytes,
             self.artifacts.clone(),
         );
@@ -257,7 +261,7 @@ impl CensusGauges {
     }
 }
 
-/// A client may make up methods; the metrics must not grow by them.
+/// Clients can invent methods, which must not add series.
 fn method_name(method: &Method) -> &'static str {
     match *method {
         Method::GET => "GET",

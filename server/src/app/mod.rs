@@ -1,9 +1,8 @@
-//! State shared by the handlers, and setup of the service.
+//! Configuration of the service, and state shared by its handlers.
 
 pub(crate) mod bodies;
 pub(crate) mod columns;
 pub(crate) mod expansions;
-pub(crate) mod feed;
 pub(crate) mod lane;
 pub(crate) mod limit;
 pub(crate) mod metrics;
@@ -21,15 +20,14 @@ use drillsweep_store::Store;
 use tokio::sync::watch;
 
 use crate::answer::body::MEMORY_OF_BODY;
+use crate::answer::chunk::Allowance;
 use crate::answer::error::Result;
-use crate::answer::eviction::Eviction;
 use crate::answer::format::{Answer, Format};
 use crate::answer::need::Need;
 use crate::answer::stored::MEMORY_OF_FILE;
 use crate::app::bodies::Bodies;
 use crate::app::columns::KnownColumns;
 use crate::app::expansions::{ExpansionLimits, Expansions};
-use crate::app::feed::Feed;
 use crate::app::lane::{Lane, Place};
 use crate::app::limit::{OwnerLimits, RequestLimiter};
 use crate::app::metrics::{Metrics, Occupancy};
@@ -40,37 +38,37 @@ use crate::app::shares::Shares;
 use crate::guard::strangers::Strangers;
 use crate::listen::ConnectionLimits;
 
-/// Event streams, and as many long polls, that may be open at once; each looks at the store some times a second.
+/// Largest number of open event streams, and of long polls; each reads the store some times a second.
 const HELD_ANSWERS: usize = 1_000;
 
-/// How the service keeps house.
+/// Configuration of the service.
 #[derive(Debug, Clone)]
 pub struct Config {
-    /// How often points of dead workers are given back to the queue.
+    /// Interval at which points of dead workers are queued again.
     pub reap_interval: Duration,
-    /// How often a long poll looks for a change.
+    /// Interval at which long polls look for changes.
     pub poll_interval: Duration,
-    /// How long open requests may take to end once the service is asked to stop.
+    /// Time that open requests have to end when the service stops.
     pub drain_timeout: Duration,
     /// Limits of one owner.
     pub owner_limits: OwnerLimits,
-    /// How long data are kept.
+    /// Retention of data.
     pub retention: RetentionConfig,
-    /// How many connections there may be, and how long they may take.
+    /// Limits on the number of connections, and timeouts.
     pub connections: ConnectionLimits,
-    /// Memory that large bodies of requests take together \[bytes\], of which one owner may have half.
+    /// Memory of all large request bodies \[bytes\], half of it for one owner.
     pub body_bytes: usize,
-    /// Expansions and plans of sweeps.
+    /// Limits of expansions and plans of sweeps.
     pub expansions: ExpansionLimits,
-    /// Large answers (tables, pictures, views of histories) that are computed at once.
+    /// Number of large answers (tables, pictures, views of histories) that are computed at once.
     pub large_answers: usize,
-    /// Bytes of memory that large answers take together. Those that take a quarter of it at most have half of it besides, for
-    /// themselves, and so have files that are sent as they are stored.
+    /// Memory of all large answers \[bytes\]. Half as much in addition is reserved for answers of at most a quarter of it, and as much for
+    /// stored files.
     pub large_answer_bytes: usize,
-    /// Requests for them that may wait; those beyond are told to come back.
+    /// Number of requests for large answers that may wait; further ones are refused with a Retry-After.
     pub large_answers_waiting: usize,
-    /// How long a request for one waits before answers whose clients take them slowly are broken off to make room.
-    pub large_answer_grace: Duration,
+    /// Time that a client may keep a large answer waiting, which is renewed at 32 kB/s; slower clients are broken off.
+    pub large_answer_allowance: Duration,
 }
 
 impl Default for Config {
@@ -93,7 +91,7 @@ impl Default for Config {
             large_answers: cores,
             large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
-            large_answer_grace: Duration::from_secs(10),
+            large_answer_allowance: Duration::from_secs(30),
         }
     }
 }
@@ -103,7 +101,7 @@ impl Default for Config {
 pub(crate) struct App {
     pub(crate) store: Store,
     pub(crate) config: Arc<Config>,
-    /// Turns true when the service is asked to stop; long polls and event streams end on it.
+    /// True once the service stops; long polls and event streams then end.
     pub(crate) stopping: watch::Receiver<bool>,
     pub(crate) limiter: Arc<RequestLimiter>,
     pub(crate) metrics: Arc<Metrics>,
@@ -112,19 +110,17 @@ pub(crate) struct App {
     pub(crate) streams: Arc<Shares>,
     /// Places for long polls.
     pub(crate) polls: Arc<Shares>,
-    /// Addresses that send tokens which are not valid.
+    /// Addresses that send invalid tokens.
     pub(crate) strangers: Arc<Strangers>,
-    /// Changes among all sweeps, for those event streams that report all.
-    pub(crate) feed: Arc<Feed>,
     pub(crate) columns: Arc<KnownColumns>,
     pictures: Arc<Pictures>,
-    /// Memory for views of results, which read and write out tables \[KiB\].
+    /// Memory for views of results \[KiB\].
     views: Arc<Lane>,
-    /// The same for views that take little: they do not wait for those that take much.
+    /// Memory for small views, which do not wait for large ones \[KiB\].
     small_views: Arc<Lane>,
-    /// Memory for files that are sent as they are stored \[KiB\].
+    /// Memory for stored files \[KiB\].
     files: Arc<Lane>,
-    /// Places for expanding and planning sweeps, which searches an equilibrium, and for `rk4` estimates how long a step may be.
+    /// Places for expansions, plans and modes, which search an equilibrium.
     pub(crate) expansions: Arc<Expansions>,
     /// Memory for bodies of requests.
     pub(crate) bodies: Arc<Bodies>,
@@ -133,8 +129,8 @@ pub(crate) struct App {
 impl App {
     pub(crate) fn new(store: Store, config: Config, stopping: watch::Receiver<bool>) -> Self {
         let lane = |units| {
-            let grace = config.large_answer_grace;
-            Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, grace))
+            let allowance = config.large_answer_allowance;
+            Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, allowance))
         };
         let metrics = Metrics::new(&store);
         let strangers = Strangers::new(metrics.refused_tokens.clone());
@@ -146,7 +142,6 @@ impl App {
             streams: Shares::new("event streams", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             polls: Shares::new("long polls", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             strangers: Arc::new(strangers),
-            feed: Arc::default(),
             columns: Arc::default(),
             pictures: Arc::new(Pictures::new()),
             views: lane(config.large_answer_bytes / KIB),
@@ -159,7 +154,7 @@ impl App {
         }
     }
 
-    /// Takes the memory for a view of a result, and what its body takes on its way.
+    /// Takes memory for a view of a result and its body.
     pub(crate) async fn view(&self, need: impl Into<Need>) -> Result<Place> {
         let need = need.into();
         let memory = kibibytes(need.bytes.saturating_add(MEMORY_OF_BODY));
@@ -173,7 +168,7 @@ impl App {
         }
     }
 
-    /// Use of all that requests wait for, by name.
+    /// Use of all bounded resources, by name.
     pub(crate) fn lanes(&self) -> [(&'static str, Occupancy); 5] {
         [
             ("views", self.views.measure(KIB)),
@@ -184,7 +179,7 @@ impl App {
         ]
     }
 
-    /// Answers with what `prepare` makes in a place of the memory that it needs; a picture is kept under `key`, by which it is the same.
+    /// Answers with the result of `prepare`, which runs in a place of the needed memory; a picture is cached under `key`.
     pub(crate) async fn answer(
         &self,
         format: Format,
@@ -199,8 +194,8 @@ impl App {
         self.pictures.get_or_draw(key, draw).await
     }
 
-    /// Takes the memory for a file that is sent as it is stored, with when it is evicted.
-    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Eviction)> {
+    /// Takes memory for a stored file, with the allowance of its client.
+    pub(crate) async fn file(&self) -> Result<(impl Send + 'static, Allowance)> {
         Ok(self.files.enter(kibibytes(MEMORY_OF_FILE)).await?.into_parts())
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures that were drawn lately: twenty viewers of a sweep cost one drawing.
+//! Cache of pictures: twenty viewers of a sweep cost one drawing.
 
 use axum::body::Body;
 use axum::response::Response;
@@ -15,7 +15,7 @@ const MEMORY: u64 = 16 << 20;
 /// A picture of usual size \[bytes\].
 const USUAL: u64 = 64 << 10;
 
-/// Pictures by what they show: the tag of their contents, and the name of their file.
+/// Pictures by the tag of their contents and their file name.
 pub(crate) struct Pictures(Cache<String, (Head, Bytes), Size>);
 
 #[derive(Clone)]
@@ -32,10 +32,10 @@ impl Pictures {
         Self(Cache::with_weighter((MEMORY / USUAL) as usize, MEMORY, Size))
     }
 
-    /// The picture of a key, which is drawn if it is not kept; while one request draws it, others wait for it.
+    /// The picture of a key, drawn if it is not kept; while one request draws it, others wait for it.
     ///
     /// # Errors
-    /// Errors of the drawing; the next request tries again.
+    /// Errors of drawing; the next request draws again.
     pub(crate) async fn get_or_draw(
         &self,
         key: &str,
@@ -45,7 +45,7 @@ impl Pictures {
             Ok(kept) => kept,
             Err(guard) => {
                 let drawn = draw.await?.into_picture()?;
-                // It is not kept if another one was put in its place meanwhile.
+                // Another picture may have been kept in its place meanwhile.
                 let _ = guard.insert(drawn.clone());
                 drawn
             }

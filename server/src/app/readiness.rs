@@ -1,8 +1,8 @@
-//! Whether the store works, as far as anybody has looked.
+//! Result of the last check of the store.
 
 use tokio::sync::Mutex;
 use tokio::time::Instant;
 
-/// When the store was last seen to work.
+/// Time of the last successful check.
 #[derive(Default)]
 pub(crate) struct Readiness(pub(crate) Mutex<Option<Instant>>);

@@ -1,4 +1,4 @@
-//! How long data are kept, and whether the service sees to that.
+//! Retention: ages of data, and the interval of garbage collection.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,12 +8,12 @@ use drillsweep_table::tables::{HISTORY, SNAPSHOTS};
 
 const DAY: Duration = Duration::from_secs(86_400);
 
-/// How long data are kept, and who sees to that.
+/// Retention of data.
 #[derive(Debug, Clone)]
 pub struct RetentionConfig {
-    /// Retention policy: what is kept for how long.
+    /// Ages by kind of data.
     pub policy: RetentionPolicy,
-    /// Time from one collection to the next; none where the service does not collect.
+    /// Time between collections; `None` if the service does not collect.
     pub interval: Option<Duration>,
 }
 
@@ -32,7 +32,7 @@ impl Default for RetentionConfig {
 }
 
 impl RetentionConfig {
-    /// An age for every table that is a recording.
+    /// Ages of all tables that are recordings.
     pub fn of_recordings(age: Duration) -> BTreeMap<String, Duration> {
         [&HISTORY, &SNAPSHOTS].map(|layout| (layout.name.to_owned(), age)).into()
     }

@@ -1,4 +1,4 @@
-//! Answers that are held open, such as long polls and event streams: some for all owners together, and fewer for each.
+//! Limits on answers that are held open (long polls, event streams), of all owners and of each.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -31,10 +31,10 @@ impl Shares {
         Arc::new(Self { answers, all, of_owner, open: Mutex::default() })
     }
 
-    /// Takes a place. Callers without a token, on this machine, have the name "" and may have all places.
+    /// Takes a place. Local callers without a token have the name "", and no limit of their own.
     ///
     /// # Errors
-    /// The owner (429), or all together (503), have as many as there may be.
+    /// The owner (429), or all owners together (503), are at the limit.
     pub(crate) fn take(self: &Arc<Self>, owner: &str) -> Result<Share> {
         let mut open = self.open();
         if open.values().sum::<usize>() >= self.all {

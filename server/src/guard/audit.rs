@@ -5,12 +5,11 @@ use axum::http::{Method, Uri, header};
 use axum::response::Response;
 use drillsweep_store::TokenRecord;
 
-/// In whose name something was done, where the request's token does not say it.
+/// Owner of a change, if it is not that of the request's token.
 #[derive(Debug, Clone)]
 pub(crate) struct Owner(pub(crate) String);
 
-/// Notes a request that was carried out: from where it came, with which token where there are any, and in whose name. Those that only read
-/// are not noted. The request's id is in the line's span.
+/// Logs successful requests other than reads: address, token and owner. The request's id is in the span.
 pub(crate) fn note(
     token: Option<&TokenRecord>,
     peer: Option<Peer>,
@@ -21,7 +20,7 @@ pub(crate) fn note(
     if is_reading(method, uri) || !response.status().is_success() {
         return;
     }
-    // Of what was made.
+    // The path of the created sweep.
     let location = response.headers().get(header::LOCATION).and_then(|value| value.to_str().ok());
     let owner = response.extensions().get::<Owner>().map(|owner| owner.0.as_str());
     tracing::info!(
@@ -36,7 +35,7 @@ pub(crate) fn note(
     );
 }
 
-/// True of requests that change nothing: by their method, the reading of a scenario file, and the dry runs of the routes that have them.
+/// True for requests that change nothing: reads, parsing of a scenario file, and dry runs.
 pub(crate) fn is_reading(method: &Method, uri: &Uri) -> bool {
     let is_dry_run = || uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
     match *method {

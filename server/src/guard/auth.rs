@@ -1,8 +1,7 @@
-//! Authentication and authorization: one policy over all routes, so that no route can forget it.
+//! Authentication and authorization: one policy over all routes.
 //!
-//! Until the first token exists everybody on this machine may do everything, and the service listens nowhere else.
-//! From then on every request needs a valid token, but for [`OPEN`] routes; tokens that expire or are revoked never
-//! open the service again.
+//! Until the first token exists, callers on this machine have all rights, and the service listens on no other address. From then on every
+//! request needs a valid token, except for [`OPEN`] routes; expiry or revocation of all tokens does not open the service again.
 
 use std::net::IpAddr;
 use std::time::Duration;
@@ -23,7 +22,7 @@ use crate::guard::audit;
 use crate::guard::caller::Caller;
 use crate::listen::Peer;
 
-/// Routes open to everybody: health checks have no tokens, clients begin with document and vocabulary, and people with the page.
+/// Routes without a token: health checks, the OpenAPI document, the vocabulary, and the page.
 const OPEN: [&str; 8] = [
     "/livez",
     "/readyz",
@@ -32,17 +31,17 @@ const OPEN: [&str; 8] = [
     "/docs",
     "/",
     "/web/{version}/{*path}",
-    // Whoever has no token yet logs in here; what it tells of the session, it tells its bearer alone.
+    // Used to log in; it describes only the session of the caller.
     "/v1/session",
 ];
 
-/// Name of the cookie that holds a session.
+/// Name of the session cookie.
 pub(crate) const COOKIE: &str = "drillsweep_session";
 
-/// How long a stream of events goes on after its token has ended, at most.
+/// Longest time that an event stream outlives its token.
 const LOOK_AGAIN: Duration = Duration::from_secs(5);
 
-/// Lets a request through if its caller may make it and has not made too many.
+/// Admits a request if its caller has the rights, and is within the rate.
 pub(crate) async fn guard(
     State(app): State<App>,
     matched: Option<MatchedPath>,
@@ -76,12 +75,12 @@ fn is_event_stream(response: &Response) -> bool {
     response.headers().get(header::CONTENT_TYPE).is_some_and(|kind| kind == "text/event-stream")
 }
 
-/// Ends a stream of events once who asked for it would not get it any more: it would outlive its token otherwise.
+/// Ends an event stream once its caller has no right to it any more.
 fn while_admitted(app: App, headers: HeaderMap, peer: Option<Peer>, response: Response) -> Response {
     let is_refused = async move {
         loop {
             tokio::time::sleep(LOOK_AGAIN).await;
-            // A database that is away says nothing about the token.
+            // An unreachable database does not end the token.
             if identify(&app, &headers, peer).await.is_err_and(|error| error.is_of(ProblemKind::Unauthorized))
             {
                 return;
@@ -112,8 +111,8 @@ async fn admit(
 
 async fn identify(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> Result<Caller> {
     let Some(value) = headers.get(header::AUTHORIZATION) else {
-        // Pages of other sites cannot use it: the cookie is not sent with their requests (`SameSite`), and what they ask to be changed
-        // is refused before (`CsrfLayer`).
+        // Pages of other sites cannot use it: browsers do not send the cookie with their requests (`SameSite`), and `CsrfLayer` refuses
+        // their changes.
         if let Some(secret) = session_cookie(headers)
             && let Some(session) = app.store.session(&secret).await?
         {
@@ -127,7 +126,7 @@ async fn identify(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> Result<
             )),
         };
     };
-    // The scheme is written in any case (RFC 9110 section 11.1).
+    // The scheme is case-insensitive (RFC 9110 section 11.1).
     let secret = value.to_str().ok().and_then(|value| value.split_once(' '));
     let secret = secret.filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"));
     let token = valid_token(app, peer, secret.map_or("", |(_, text)| text)).await?;
@@ -135,10 +134,10 @@ async fn identify(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> Result<
     Ok(Caller::Bearer(token))
 }
 
-/// The token of a text, if it is valid.
+/// Looks up a token by its text.
 ///
 /// # Errors
-/// It is not (401), or too many of its address were not (429).
+/// The token is not valid (401), or too many from its address were not (429).
 pub(crate) async fn valid_token(app: &App, peer: Option<Peer>, text: &str) -> Result<TokenRecord> {
     let secret = TokenSecret::parse(text.trim());
     app.strangers.admit(peer, secret.as_ref())?;
@@ -152,18 +151,18 @@ pub(crate) async fn valid_token(app: &App, peer: Option<Peer>, text: &str) -> Re
     Err(Error::unauthorized("the token is unknown, expired or revoked"))
 }
 
-/// The text of the session that a request came with, if it has one.
+/// Text of the session cookie of a request.
 pub(crate) fn session_cookie(headers: &HeaderMap) -> Option<TokenSecret> {
     TokenSecret::parse(headers.typed_get::<Cookie>()?.get(COOKIE)?)
 }
 
 async fn note_use(app: &App, token: &TokenRecord) {
     if let Err(error) = app.store.touch_token(token).await {
-        tracing::warn!(%error, token.id, "the use of a token could not be noted");
+        tracing::warn!(%error, token.id, "the use of a token could not be stored");
     }
 }
 
-/// A name that leads here from elsewhere (DNS rebinding) must not stand in for this machine.
+/// A foreign name that resolves to this machine (DNS rebinding) must not count as local.
 fn local(headers: &HeaderMap) -> Result<Caller> {
     let host = headers.get(header::HOST).and_then(|value| value.to_str().ok());
     match host {
@@ -187,7 +186,7 @@ fn names_this_machine(host: &str) -> bool {
         || address.parse().is_ok_and(|address: IpAddr| address.is_loopback())
 }
 
-/// Reading takes any token; anything else one that submits, and on somebody else's sweep one that administers.
+/// Reads need any token; changes need scope submit, and those of other owners' sweeps scope admin.
 async fn permit(
     app: &App,
     token: &TokenRecord,
@@ -200,7 +199,7 @@ async fn permit(
         return Ok(());
     }
     if token.scope < TokenScope::Submit {
-        let detail = format!("this token is for reading; {method} takes one of scope submit or admin");
+        let detail = format!("this token has scope read; {method} needs scope submit or admin");
         return Err(Error::new(ProblemKind::Forbidden, detail));
     }
     if let Some(id) = id.filter(|_| route.starts_with("/v1/sweeps/{id}"))
@@ -229,7 +228,7 @@ mod tests {
         {
             assert!(!names_this_machine(host), "{host}");
         }
-        // Names that anybody can register, and only end or begin like this machine's.
+        // Names that anybody can register, which end or begin like local ones.
         for host in
             ["evillocalhost", "evillocalhost:7340", "evil-localhost", "127.0.0.1.evil.com", "127.0.0.1evil"]
         {

@@ -8,15 +8,14 @@ use crate::answer::error::{Error, Result};
 /// Caller of a request.
 #[derive(Debug, Clone)]
 pub(crate) enum Caller {
-    /// Somebody on this machine, while there are no tokens.
+    /// A local caller, while there are no tokens.
     Local,
-    /// The bearer of a token.
+    /// The owner of a token.
     Bearer(TokenRecord),
 }
 
 impl Caller {
-    /// In whose name a sweep is submitted: the token's owner, or for those who may choose, the one they name. None
-    /// means that the request does not say.
+    /// Owner of a submitted sweep: that of the token, or with scope admin the named one. `None` if the request names no owner.
     pub(crate) fn submits_as(&self, asked: Option<String>) -> Result<Option<String>> {
         match (self, asked) {
             (Caller::Local, asked) => Ok(asked),
@@ -36,7 +35,7 @@ impl Caller {
         }
     }
 
-    /// The token that the request came with.
+    /// Token of the request.
     pub(crate) fn token(&self) -> Option<&TokenRecord> {
         match self {
             Caller::Local => None,
@@ -44,7 +43,7 @@ impl Caller {
         }
     }
 
-    /// Owner whose budget of requests a request is taken from.
+    /// Owner whose rate limit a request counts against.
     pub(crate) fn budget(&self) -> &str {
         match self {
             Caller::Local => "",

@@ -1,4 +1,4 @@
-//! How long requests take.
+//! Durations of requests.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use axum::response::Response;
 
 use crate::app::App;
 
-/// Time to the headers of an answer after which its request is logged.
+/// Time to the headers of an answer from which its request is logged as slow.
 const SLOW: Duration = Duration::from_secs(2);
 
-/// Times every request; the route is that of the router, so that there are only as many as there are routes.
+/// Measures every request, by the pattern of its route, so that series are bounded.
 pub(crate) async fn measure(
     State(app): State<App>,
     matched: Option<MatchedPath>,
@@ -22,7 +22,7 @@ pub(crate) async fn measure(
     let (method, uri) = (request.method().clone(), request.uri().clone());
     let response = next.run(request).await;
     let took = start.elapsed();
-    // Long polls wait by request.
+    // Long polls wait by design.
     if took > SLOW && !uri.query().is_some_and(|query| query.contains("wait=")) {
         tracing::info!(http.method = %method, http.target = %uri, seconds = took.as_secs_f64(), "slow request");
     }

@@ -1,4 +1,4 @@
-//! Layers that every request passes through.
+//! Middleware of all routes.
 
 use std::any::Any;
 use std::time::Duration;
@@ -27,8 +27,8 @@ use crate::listen::{InReserve, Peer};
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Wraps the routes: request ids, spans, metrics, compression, types that are not guessed, copies that are still right, problem documents,
-/// encodings that nobody offers, overlong requests, unclear hosts, panics, refusal of other sites' pages, tokens and rates; in this order from the outside.
+/// Wraps the routes in, from the outside: request ids, spans, metrics, compression, `nosniff`, 304 for current copies, problem documents,
+/// refusal of encodings, overlong requests and unclear hosts, panics, refusal of other sites' pages, the reserve, tokens and rates.
 pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     let worthwhile =
         DefaultPredicate::new().and(NotForContentType::const_new("application/vnd.apache.parquet"));
@@ -50,7 +50,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
                     .compress_when(Worthwhile(worthwhile)),
             )
             .layer(from_fn(forbid_guessing))
-            .layer(from_fn(tell_unchanged))
+            .layer(from_fn(answer_unchanged))
             .layer(from_fn(write_problems))
             .layer(from_fn(agree_on_encoding))
             .layer(from_fn(refuse_long_requests))
@@ -62,7 +62,7 @@ pub(crate) fn wrap(routes: Router, app: &App) -> Router {
     )
 }
 
-/// Ids in order of time, so that a log can be searched by either.
+/// Ids in order of time (UUID version 7).
 #[derive(Clone)]
 struct RequestIds;
 
@@ -92,18 +92,18 @@ fn log_response<B>(response: &Response<B>, latency: Duration, span: &Span) {
     );
 }
 
-/// Keeps browsers from taking an answer for another type than it says.
+/// Keeps browsers from guessing media types.
 async fn forbid_guessing(request: Request, next: Next) -> Response<Body> {
     let mut response = next.run(request).await;
     response.headers_mut().insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
     response
 }
 
-/// Marks answers to clients that refuse what is not encoded.
+/// Marks answers to clients that refuse `identity`.
 #[derive(Clone, Copy)]
 struct MustBeEncoded;
 
-/// Which answers are compressed: those that it pays for, and those that must be encoded.
+/// Predicate of compression: answers that `P` accepts, and those that must be encoded.
 #[derive(Clone, Copy)]
 struct Worthwhile<P>(P);
 
@@ -113,8 +113,8 @@ impl<P: Predicate> Predicate for Worthwhile<P> {
     }
 }
 
-/// Refuses requests that exclude both gzip and an answer without any encoding (RFC 9110 section 12.5.3), before anything is done for
-/// them, and sees that those that exclude only the latter get no part of an answer, since parts are not encoded.
+/// Refuses requests that exclude both gzip and `identity` (RFC 9110 section 12.5.3) before any work. Requests that exclude `identity` alone
+/// get no ranges, which are not encoded.
 async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
     let accepted = accepted_encodings(request.headers());
     let any = accepts(&accepted, &["*"]);
@@ -133,7 +133,7 @@ async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
     response
 }
 
-/// Whether a client has said that it takes an answer encoded as gzip.
+/// True if `Accept-Encoding` accepts gzip.
 pub(crate) fn takes_gzip(headers: &HeaderMap) -> bool {
     let accepted = accepted_encodings(headers);
     accepts(&accepted, &["gzip", "x-gzip"]).or(accepts(&accepted, &["*"])).unwrap_or(false)
@@ -145,7 +145,7 @@ fn accepted_encodings(headers: &HeaderMap) -> String {
     accepted.join(",")
 }
 
-/// Whether an `Accept-Encoding` header accepts an encoding of one of these names; none where it names none of them.
+/// True if an `Accept-Encoding` header accepts one of these encodings; `None` if it names none of them.
 fn accepts(header: &str, names: &[&str]) -> Option<bool> {
     header.split(',').find_map(|entry| {
         let mut parts = entry.split(';').map(str::trim);
@@ -157,7 +157,7 @@ fn accepts(header: &str, names: &[&str]) -> Option<bool> {
     })
 }
 
-/// Bytes of a request's target, and of its header fields together, at most: what other servers allow.
+/// Limits on a request's target and its header fields together \[bytes\], as in other servers.
 const LONGEST_TARGET: usize = 8 * 1024;
 const LONGEST_HEADER: usize = 32 * 1024;
 
@@ -175,8 +175,8 @@ async fn refuse_long_requests(request: Request, next: Next) -> Response<Body> {
     Error::new(kind, format!("{what} have more than {limit} bytes")).into_response()
 }
 
-/// Refuses requests of a connection whose host is missing, given twice, or another than that of the target (RFC 9112 section 3.2): it decides
-/// who is local.
+/// Refuses requests whose host is missing, duplicate, or different from that of the target (RFC 9112 section 3.2), since it decides which
+/// callers are local.
 async fn refuse_unclear_hosts(request: Request, next: Next) -> Response<Body> {
     let mut hosts = request.headers().get_all(header::HOST).iter();
     let is_clear = match (hosts.next(), hosts.next()) {
@@ -195,10 +195,10 @@ async fn refuse_unclear_hosts(request: Request, next: Next) -> Response<Body> {
     Error::parameter("Host", None, detail).into_response()
 }
 
-/// Paths that connections in the reserve may request: those that show how the service is, and cost little.
+/// Paths that connections in the reserve may request: cheap ones with the status of the service.
 const LIGHT: [&str; 6] = ["/livez", "/readyz", "/v1/queue", "/v1/workers", "/v1/limits", "/v1/retention"];
 
-/// Refuses all else to connections in the reserve.
+/// Refuses other paths to connections in the reserve.
 async fn keep_reserve(request: Request, next: Next) -> Response<Body> {
     if request.extensions().get::<InReserve>().is_some() && !LIGHT.contains(&request.uri().path()) {
         return Error::unavailable("all connections are taken").into_response();
@@ -206,8 +206,8 @@ async fn keep_reserve(request: Request, next: Next) -> Response<Body> {
     next.run(request).await
 }
 
-/// Answers 304 instead of what the client has a copy of. Only reading has such an answer (RFC 9110 section 13.1.2).
-async fn tell_unchanged(request: Request, next: Next) -> Response<Body> {
+/// Answers reads with 304 if the client has a current copy (RFC 9110 section 13.1.2).
+async fn answer_unchanged(request: Request, next: Next) -> Response<Body> {
     let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
     let known = request.headers().typed_get::<IfNoneMatch>().filter(|_| is_reading);
     let response = next.run(request).await;
@@ -224,7 +224,7 @@ async fn tell_unchanged(request: Request, next: Next) -> Response<Body> {
     unchanged
 }
 
-/// Gives every problem its body, with the request's id as `instance`.
+/// Writes the bodies of problems, with the request's id as `instance`.
 async fn write_problems(request: Request, next: Next) -> Response<Body> {
     let id = request.extensions().get::<RequestId>().cloned();
     let mut response = next.run(request).await;
@@ -245,14 +245,14 @@ async fn write_problems(request: Request, next: Next) -> Response<Body> {
     response
 }
 
-// The signature is the layer's.
+// Signature of the layer.
 #[expect(clippy::needless_pass_by_value)]
 fn answer_panic(panic: Box<dyn Any + Send>) -> Response<Body> {
     let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
     Error::internal(text.unwrap_or("a panic without a message")).into_response()
 }
 
-// The signature is the layer's.
+// Signature of the layer.
 #[expect(clippy::needless_pass_by_value)]
 fn refuse_other_sites(error: ProtectionError) -> Response<Body> {
     tracing::warn!(reason = ?error.kind(), "a page of another site sent a request");
@@ -268,14 +268,14 @@ mod tests {
 
     use super::*;
 
-    /// RFC 9110 section 13.2.1: a precondition is ignored where the answer without it would not be a success; and sections 15.3.2 and
-    /// 15.3.7: a client with a copy has neither what was created nor a part of it.
+    /// RFC 9110 section 13.2.1: a precondition is ignored if the answer without it is no success; sections 15.3.2 and 15.3.7: a copy is
+    /// neither a created resource nor a part of one.
     #[tokio::test]
-    async fn only_an_answer_with_the_whole_content_is_told_to_be_unchanged() {
+    async fn only_an_answer_with_the_whole_content_is_unchanged() {
         for status in [200, 201, 202, 206, 404, 409, 412, 500] {
             let status = StatusCode::from_u16(status).unwrap();
             let answer = move || async move { (status, [(header::ETAG, "\"copy\"")], "content") };
-            let routes = Router::new().route("/", get(answer)).layer(from_fn(tell_unchanged));
+            let routes = Router::new().route("/", get(answer)).layer(from_fn(answer_unchanged));
             for known in ["\"copy\"", "*"] {
                 let request =
                     Request::get("/").header(header::IF_NONE_MATCH, known).body(Body::empty()).unwrap();
@@ -288,7 +288,7 @@ mod tests {
             }
         }
         let answer = async || ([(header::ETAG, "\"copy\"")], "changed");
-        let routes = Router::new().route("/", patch(answer)).layer(from_fn(tell_unchanged));
+        let routes = Router::new().route("/", patch(answer)).layer(from_fn(answer_unchanged));
         let request = Request::patch("/").header(header::IF_NONE_MATCH, "\"copy\"").body(Body::empty());
         let response = routes.oneshot(request.unwrap()).await.unwrap();
         assert_eq!(response.status(), StatusCode::OK, "what has changed something is no copy");

@@ -1,4 +1,4 @@
-//! Guards that every request passes through before its route, and checks that a submission has to pass.
+//! Guards of all requests, and checks of submissions.
 
 pub(crate) mod audit;
 pub(crate) mod auth;

@@ -1,4 +1,4 @@
-//! How much an owner may have in the queue.
+//! Quota of queued and running points by owner.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use drillsweep_api::ProblemKind;
 use crate::answer::error::{Error, Result};
 use crate::app::App;
 
-/// Refuses points that would make an owner's part of the queue longer than allowed. The check is not one transaction
-/// with the submission: submissions at the same instant may exceed it by their own size.
+/// Refuses points beyond an owner's quota. The check and the submission are separate transactions, so that simultaneous submissions may
+/// exceed the quota by their size.
 pub(crate) async fn check_open_points(app: &App, owner: &str, added: usize) -> Result<()> {
-    /// Points take seconds to minutes: sooner there is no use in trying again.
+    /// Points take seconds to minutes, so that an earlier retry is useless.
     const WAIT: Duration = Duration::from_secs(60);
     let limit = app.config.owner_limits.open_points;
     let open = app.store.open_work(owner).await?;

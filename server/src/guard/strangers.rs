@@ -1,4 +1,4 @@
-//! Addresses that send tokens which are not valid: limited, logged and counted.
+//! Addresses that send invalid tokens: rate limit, log and count.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
@@ -12,17 +12,17 @@ use prometheus_client::metrics::counter::Counter;
 use crate::answer::error::{Error, Result};
 use crate::listen::{Peer, network};
 
-/// Refused tokens of one address at once, and per second over longer times.
+/// Refused tokens of one address: at once, and per second in the long run.
 const BURST: f64 = 20.0;
 const PER_SECOND: f64 = 0.5;
 
 /// Time between two lines of the log about one address.
 const BETWEEN_LINES: Duration = Duration::from_secs(60);
 
-/// Addresses that are kept; those that are longest silent are forgotten beyond.
+/// Number of addresses that are kept; beyond it those longest silent are dropped.
 const MOST_ADDRESSES: usize = 10_000;
 
-/// Tokens that were valid lately: they are looked up whatever else comes from their address, which may be that of a proxy.
+/// Number of recently valid tokens, which are looked up even if their address is limited: it may be that of a proxy.
 const MOST_KNOWN: usize = 1_000;
 
 /// Refused tokens, by address.
@@ -41,7 +41,7 @@ struct State {
 }
 
 struct Stranger {
-    /// Refused tokens, less those that time has forgiven.
+    /// Level of the leaky bucket.
     level: f64,
     at: Instant,
     /// Time of the last line of the log, and refused tokens since then.
@@ -55,10 +55,10 @@ impl Strangers {
         Self { state: Mutex::default(), refused }
     }
 
-    /// Admits a token to be looked up.
+    /// Admits the lookup of a token.
     ///
     /// # Errors
-    /// Too many of its address were refused lately, and this one was not valid lately (429).
+    /// Too many tokens of its address were refused, and this one was not valid recently (429).
     pub(crate) fn admit(&self, peer: Option<Peer>, secret: Option<&TokenSecret>) -> Result<()> {
         let state = self.state();
         if secret.is_some_and(|secret| state.known.contains(&secret.id())) {
@@ -84,7 +84,7 @@ impl Strangers {
         }
     }
 
-    /// Counts a token that is not valid.
+    /// Counts an invalid token.
     pub(crate) fn refuse(&self, peer: Option<Peer>, secret: Option<&TokenSecret>) {
         self.refused.inc();
         let now = Instant::now();
@@ -121,7 +121,7 @@ impl Strangers {
 }
 
 impl State {
-    /// Forgets half of the addresses, those longest silent, when there are too many.
+    /// Drops the half of the addresses that is longest silent if there are too many.
     fn make_room(&mut self) {
         if self.addresses.len() < MOST_ADDRESSES {
             return;
@@ -145,7 +145,7 @@ fn too_many() -> Error {
     Error::temporary(ProblemKind::TooManyRequests, detail, Duration::from_secs_f64(1.0 / PER_SECOND))
 }
 
-/// The network that a request comes from; without a connection, as in tests, the unspecified address.
+/// Network of a request; the unspecified address without a connection, as in tests.
 fn address(peer: Option<Peer>) -> IpAddr {
     peer.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Peer(address)| network(address.ip()))
 }
@@ -174,12 +174,12 @@ mod tests {
                 strangers.refuse(here, Some(&secret(guess)));
             }
         }
-        // The test may take some seconds, each of which forgives half of one.
+        // The test may take some seconds, and the bucket leaks one in 2 s.
         assert!((20..60).contains(&admitted), "{admitted}");
         assert_eq!(strangers.refused.get(), admitted);
         assert!(strangers.admit(here, Some(&secret(1))).is_ok());
         assert!(strangers.admit(there, Some(&secret(2))).is_ok());
-        // Once revoked it is one of many.
+        // A revoked token counts like any invalid one.
         strangers.refuse(here, Some(&secret(1)));
         let problem = strangers.admit(here, Some(&secret(1))).expect_err("refused").into_problem();
         assert_eq!(problem.status, 429);

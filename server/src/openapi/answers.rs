@@ -13,20 +13,20 @@ use utoipa::{IntoParams, IntoResponses, ToSchema};
 
 use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
 
-/// Problems that every route may answer instead of a result.
+/// Problems of all routes.
 pub(crate) struct Problems;
 
 impl IntoResponses for Problems {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
         let problem = ContentBuilder::new().schema(Some(reference::<ProblemDetails>())).build();
         let response = ResponseBuilder::new()
-            .description("A problem document (RFC 9457); its `type` tells the kinds apart")
+            .description("A problem document (RFC 9457); its `type` distinguishes the kinds")
             .content(PROBLEM_MEDIA_TYPE, problem);
         [("default".to_owned(), response.build().into())].into()
     }
 }
 
-/// The header by which a client asks only for what it has no copy of.
+/// Header `If-None-Match`.
 pub(crate) struct Conditional;
 
 impl IntoParams for Conditional {
@@ -34,16 +34,16 @@ impl IntoParams for Conditional {
         let parameter = ParameterBuilder::new()
             .name(header::IF_NONE_MATCH.as_str())
             .parameter_in(ParameterIn::Header)
-            .description(Some("The `ETag` of a copy; 304 if it is still right."))
+            .description(Some("`ETag` of the copy that the client has; the answer is 304 if it is current."))
             .schema(Some(ObjectBuilder::new().schema_type(Type::String)));
         vec![parameter.build()]
     }
 }
 
-/// A table in the format that was asked for.
+/// A table in the requested format.
 pub(crate) struct TableResponse;
 
-/// A table in the format that was asked for, or its picture.
+/// A table in the requested format, or its picture.
 pub(crate) struct PictureResponse;
 
 impl IntoResponses for TableResponse {
@@ -79,11 +79,11 @@ fn table_responses(formats: &[Format]) -> BTreeMap<String, RefOr<Response>> {
         };
         response = response.content(format.media_type(), content.build());
     }
-    let unchanged = ResponseBuilder::new().description("The copy is right").build();
+    let unchanged = ResponseBuilder::new().description("The copy is current").build();
     [("200".to_owned(), response.build().into()), ("304".to_owned(), unchanged.into())].into()
 }
 
-/// A page of points, whole or in the fields that were asked for.
+/// A page of points, whole or in the requested fields.
 pub(crate) struct PointPageResponse;
 
 impl IntoResponses for PointPageResponse {
@@ -92,7 +92,7 @@ impl IntoResponses for PointPageResponse {
             AnyOfBuilder::new().item(reference::<PointList>()).item(reference::<SelectedPointList>());
         let content = ContentBuilder::new().schema(Some(Schema::AnyOf(either.build()))).build();
         let response = ResponseBuilder::new()
-            .description("A page of points; with `fields`, these of each")
+            .description("A page of points, with `fields` in these fields")
             .content(Format::Json.media_type(), content);
         [("200".to_owned(), response.build().into())].into()
     }

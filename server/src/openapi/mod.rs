@@ -1,23 +1,20 @@
-//! The OpenAPI document, out of the annotations of routes and types. What is served is the committed document; that both are the same is
-//! for tests to see.
+//! The OpenAPI document from the annotations of routes and types. The served document is the committed one, which a test compares.
 
 pub(crate) mod answers;
 mod vocabulary;
 
-use drillsweep_api::{
-    DeletedSweep, ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList,
-};
+use drillsweep_api::{ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList};
 use drillsweep_table::Table;
 use serde_json::{Value, json};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
 use utoipa::{Modify, OpenApi};
 
 use crate::route::{
-    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
+    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
     snapshots, spectrogram, statistics, status, sweeps, verification,
 };
 
-/// The document as it is committed: indented JSON with a final newline.
+/// Text of the committed document: indented JSON with a final newline.
 pub fn openapi_of_annotations() -> String {
     let mut document = json!(Document::openapi());
     vocabulary::describe(&mut document);
@@ -25,7 +22,7 @@ pub fn openapi_of_annotations() -> String {
     format!("{document:#}\n")
 }
 
-/// Adds the largest numbers of members, which annotations do not have.
+/// Adds limits on numbers of members, which annotations cannot express.
 fn bound_members(document: &mut Value) {
     for request in ["SweepRequest", "RunRequest", "AppendRequest"] {
         let members = &mut document["components"]["schemas"][request]["properties"];
@@ -40,7 +37,7 @@ fn bound_members(document: &mut Value) {
     }
 }
 
-/// Description of the service as a whole in the document, and the routes and types whose annotations it is made of.
+/// The document: the service as a whole, and its annotated routes and types.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -51,24 +48,23 @@ fn bound_members(document: &mut Value) {
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     paths(
-        sweeps::create,
-        sweeps::list,
-        sweeps::show,
-        sweeps::change,
-        sweeps::delete,
-        sweeps::cancel,
-        sweeps::retry,
-        sweeps::pause,
-        sweeps::resume,
-        sweeps::table,
-        sweeps::columns,
+        sweeps::submit::create,
+        sweeps::list::list,
+        sweeps::show::show,
+        sweeps::change::change,
+        sweeps::change::delete,
+        sweeps::change::cancel,
+        sweeps::change::retry,
+        sweeps::change::pause,
+        sweeps::change::resume,
+        sweeps::table::table,
+        sweeps::table::columns,
         verification::show,
         events::follow,
-        all_events::follow,
         export::export,
-        sweeps::create_run,
+        sweeps::submit::create_run,
         points::list,
-        sweeps::append,
+        sweeps::append::append,
         points::show,
         points::failures,
         files::list,
@@ -84,8 +80,8 @@ fn bound_members(document: &mut Value) {
         results::energy,
         results::course,
         statistics::show,
-        scene::plan,
-        scene::modes,
+        analysis::plan,
+        analysis::modes,
         cost::show,
         scenarios::list,
         scenarios::read,
@@ -103,7 +99,7 @@ fn bound_members(document: &mut Value) {
         health::ready,
     ),
     components(schemas(
-        ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
+        ProblemDetails, Table, ExportManifest, PointEvent, PointList, SelectedPointList
     )),
     modifiers(&TokenSecurity),
     security(("token" = []), ()),
@@ -116,7 +112,7 @@ fn bound_members(document: &mut Value) {
 )]
 struct Document;
 
-/// Says what a token is; the alternative without one holds until the first token exists.
+/// Adds the scheme of tokens; the alternative without one holds until the first token exists.
 struct TokenSecurity;
 
 impl Modify for TokenSecurity {

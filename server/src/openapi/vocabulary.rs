@@ -7,13 +7,12 @@ use drillsweep_quantity::Quantity;
 use drillsweep_table::tables::{self, Layout};
 use serde_json::{Map, Value, json};
 
-/// The member of a field's schema that names its unit.
+/// Member of a schema with the unit of the field.
 const UNIT: &str = "x-unit";
 
 const SCHEMAS: &str = "#/components/schemas/";
 
-/// Adds to the document the unit of each numeric field of a scenario (`x-unit`), and to the routes of a point's tables what their columns
-/// are.
+/// Adds the unit of each numeric field of a scenario (`x-unit`), and the columns of each table to its route.
 pub(crate) fn describe(document: &mut Value) {
     if let Some(schemas) = document["components"]["schemas"].as_object_mut() {
         name_units(schemas);
@@ -47,7 +46,7 @@ fn columns(layout: &Layout) -> String {
     text.trim_end().to_owned()
 }
 
-/// Goes through the schemas that make up a scenario, each under the path at which it is met first.
+/// Visits the schemas of a scenario, each under its first path.
 fn name_units(schemas: &mut Map<String, Value>) {
     let mut waiting = vec![("Scenario".to_owned(), String::new())];
     let mut seen = BTreeSet::new();

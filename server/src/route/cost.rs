@@ -1,4 +1,4 @@
-//! A point's work-precision study: numbers, lines, charts.
+//! Work-precision study of a point, as numbers, lines or charts.
 
 use axum::extract::State;
 use axum::http::{HeaderValue, header};
@@ -8,16 +8,16 @@ use drillsweep_chart::{PNG_WIDTH, work_precision};
 use drillsweep_table::csv;
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::blocking::blocking;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
+use crate::answer::recordings;
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::results::PointPath;
 
-/// How a study is served.
+/// Query of a study.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -26,24 +26,24 @@ pub(crate) struct CostQuery {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", param(inline))]
     format: CostFormat,
-    /// Which error a chart shows; absent means the first of orbit size, radius deviation and trajectory that has any.
+    /// Error that a chart shows; absent means the first of orbit size, radius deviation and trajectory that is known.
     #[cfg_attr(feature = "openapi", param(inline))]
     measure: Option<Measure>,
 }
 
-/// The formats in which a study is served.
+/// Formats of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 enum CostFormat {
-    /// The report in full.
+    /// The full report.
     #[default]
     Json,
     /// One line a run.
     Csv,
-    /// The chart, as a drawing.
+    /// The chart as SVG.
     Svg,
-    /// The chart, as pixels.
+    /// The chart as PNG.
     Png,
 }
 
@@ -60,9 +60,9 @@ impl CostFormat {
 
 /// Cost of accuracy: a point's work-precision study
 ///
-/// Only a point whose scenario has a `cost_study` has one: accuracies, methods, steps and meshes against what two methods of
-/// different kind both reach over the windows that are read, each with its errors and its processor time, and the cheapest way
-/// to some accuracies. If the two do not agree, it reports that no reference exists.
+/// Exists for points whose scenario has a `cost_study`: errors and processor times of accuracies, methods, steps and meshes, relative to a
+/// reference on which two independent methods agree, and the cheapest way to some accuracies. If the two do not agree, it reports that no
+/// reference exists.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -87,7 +87,7 @@ pub(crate) async fn show(
     Path(PointPath { id, n }): Path<PointPath>,
     Query(CostQuery { format, measure }): Query<CostQuery>,
 ) -> Result<Response> {
-    let stored = artifact::stored(&app.store, &id, n, "cost").await?.whole().await?;
+    let stored = recordings::stored(&app.store, &id, n, "cost").await?.whole().await?;
     if format == CostFormat::Json {
         return Ok(answer(stored.into(), format));
     }

@@ -1,4 +1,4 @@
-//! A sweep as a stream of events (WHATWG HTML section 9.2, server-sent events).
+//! Stream of the events of a sweep (WHATWG HTML section 9.2, server-sent events).
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -26,29 +26,29 @@ use crate::route::sweeps::{PROGRESS_INTERVAL, load};
 
 const LAST_EVENT_ID: &str = "last-event-id";
 
-/// Events that are read from the store at once.
+/// Number of events read from the store at once.
 const PAGE: i64 = 500;
 
-/// How long a client waits before it connects again.
-pub(crate) const RETRY: Duration = Duration::from_secs(2);
+/// Pause of a client before it reconnects.
+const RETRY: Duration = Duration::from_secs(2);
 
-/// Where a stream begins.
+/// Query of a stream.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EventsQuery {
-    /// As the header `Last-Event-ID`, for clients that cannot set headers; the header wins.
+    /// Replaces the header `Last-Event-ID` for clients that cannot set headers; the header has precedence.
     #[serde(default, deserialize_with = "value::whole")]
     after: Option<u64>,
 }
 
 /// Follow a sweep: a stream of events
 ///
-/// Events `point` (data: `PointEvent`) report points, and reference runs that verify some, that changed their state; events
-/// `sweep` (data: `Sweep`, without its request) of the sweep as a whole: one at the beginning, one after each batch of changes, and
-/// every two seconds while there is progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at
-/// the first that is kept. It ends with the event `sweep` that everything is final, whose id is above that of the last `point`; who has
-/// seen that and connects again is answered 204, which ends the matter for a browser's EventSource.
+/// Events `point` (data: `PointEvent`) report changed states of points and of reference runs; events `sweep` (data: `Sweep`, without its
+/// request) the sweep as a whole: at the beginning, after each batch of changes, and every two seconds during progress. Without
+/// `Last-Event-ID` the stream begins now; with it, after that event; with 0, at the first event that is kept. It ends with the event
+/// `sweep` in which everything is final, whose id is above that of the last `point`. A client that reconnects after that is answered 204,
+/// after which a browser's EventSource stops.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -78,7 +78,7 @@ pub(crate) async fn follow(
     let after = last_seen(&headers, query.after)?;
     let Some(version) = app.store.sweep_version(&id).await? else { return Err(records::no_such_sweep(&id)) };
     let sequence = after.unwrap_or(version);
-    // A finished sweep's version is above its last event: who has seen only that one is told of the end.
+    // A finished sweep's version is above its last event: a client that has seen only that event still gets the end.
     if sequence >= version
         && after.is_some()
         && load(&app, &id).await?.finished.is_some()
@@ -103,8 +103,8 @@ pub(crate) async fn follow(
     Ok(Sse::new(stream).keep_alive(KeepAlive::default()).into_response())
 }
 
-/// The `id` of the last event that a client has seen, by the header or else by the query.
-pub(crate) fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Option<i64>> {
+/// `id` of the last event that a client has seen, from the header or else the query.
+fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Option<i64>> {
     let after = match headers.get(LAST_EVENT_ID) {
         None => after,
         Some(value) => {
@@ -118,15 +118,15 @@ pub(crate) fn last_seen(headers: &HeaderMap, after: Option<u64>) -> Result<Optio
     Ok(after.map(|after: u64| i64::try_from(after).unwrap_or(i64::MAX)))
 }
 
-/// One client's place in the events of a sweep. It holds nothing of the store between two looks, and is only asked for
-/// the next event when the client has taken the last: a slow client costs nothing but its place.
+/// State of one stream. It holds nothing of the store between two reads, and reads further events when the client has taken the last ones,
+/// so that a slow client costs its place alone.
 struct Follower {
     app: App,
     changes: Changes,
     id: String,
-    /// The number of the last event that was sent.
+    /// Number of the last event sent.
     sequence: i64,
-    /// The sweep as it was last sent, and when it was read.
+    /// The sweep as last sent, and the time of its reading.
     seen: Option<(Sweep, Instant)>,
     version: Option<i64>,
     pending: VecDeque<Event>,
@@ -158,17 +158,17 @@ impl Follower {
             if self.pending.is_empty() && !self.has_ended {
                 tokio::select! {
                     () = self.changes.wait(self.app.config.poll_interval) => {}
-                    // An error means that the service is gone.
+                    // An error means that the service has ended.
                     _ = stopping.wait_for(|stopping| *stopping) => return None,
                 }
             }
         }
     }
 
-    /// Reads what is new.
+    /// Reads changes since the last call.
     async fn look(&mut self) -> Result<()> {
         let Some(version) = self.app.store.sweep_version(&self.id).await? else {
-            // It was deleted.
+            // The sweep was deleted.
             self.has_ended = true;
             return Ok(());
         };
@@ -190,11 +190,11 @@ impl Follower {
         if events.len() as i64 == PAGE {
             return Ok(());
         }
-        // The version was read before the events: all up to it have been sent.
+        // The version was read before the events, so that all events up to it have been sent.
         self.sequence = self.sequence.max(version);
         let sweep = Sweep { request: None, ..load(&self.app, &self.id).await? };
         if sweep.finished.is_some() && self.app.store.sweep_version(&self.id).await? != Some(version) {
-            // It ended meanwhile: the next look tells of that, after the events before it.
+            // The sweep ended meanwhile: the next call sends its last events first.
             return Ok(());
         }
         self.has_ended = sweep.finished.is_some();

@@ -1,4 +1,4 @@
-//! A whole sweep as one zip archive, written while it is sent.
+//! Whole sweeps as zip archives, written while they are sent.
 
 use std::io::{self, Write};
 
@@ -27,10 +27,10 @@ use crate::app::lane::Place;
 use crate::openapi::answers::Problems;
 use crate::route::verification::{Verified, memory_of_points};
 
-/// Points whose files are looked up at once.
+/// Number of points whose files are looked up at once.
 const PAGE: i64 = 200;
 
-/// Contents of an archive.
+/// Query of an archive.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -43,10 +43,10 @@ pub(crate) struct ExportQuery {
 
 /// A whole sweep as one archive
 ///
-/// A zip file with `sweep.json` (what was asked for, and how it stands), `table.csv` (a row a point), `verification.csv` (a row a
-/// verified point, where there are some), the files of every point that has a result, as `points/1/history.parquet`, and last
-/// `manifest.json`: which files should be there and are not, and why (`ExportManifest`). It is written while it is sent: its size is not
-/// known beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
+/// A zip file with `sweep.json` (request and state), `table.csv` (a row a point), `verification.csv` (a row a verified point, if there are
+/// any), the files of all points with results, such as `points/1/history.parquet`, and last `manifest.json` with missing files and reasons
+/// (`ExportManifest`). It is written while it is sent: its size is not known in advance, and an archive that breaks off has no directory at
+/// its end, so that programs refuse it.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -64,19 +64,19 @@ pub(crate) async fn export(
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
     let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
-    // Before there is an answer, which could only break off where there is no memory for the table.
+    // Taken before the answer begins, which could only break off without memory for the table.
     let memory = app.view(memory_of_points(&app, &id, sweep.counts.total).await?).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
-    let (held, eviction) = app.file().await?;
+    let (held, allowance) = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
     let archive =
         Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
     beside(move || {
         let _held = held;
-        let mut sink = Sink::new(sender, archive.handle.clone(), None, eviction);
+        let mut sink = Sink::new(sender, archive.handle.clone(), None, allowance);
         match archive.write(&mut sink, &sweep, memory) {
             Ok(()) => sink.finish(),
-            // A client that has gone away needs no word in the log.
+            // A client that has gone away is not logged.
             Err(_) if sink.is_abandoned() => {}
             Err(error) => sink.fail(Error::internal(&error)),
         }
@@ -89,7 +89,7 @@ pub(crate) async fn export(
 
 type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
 
-/// An archive to be written by a thread that may wait.
+/// An archive, written by a blocking thread.
 struct Archive {
     store: Store,
     id: String,
@@ -98,7 +98,7 @@ struct Archive {
 }
 
 impl Archive {
-    /// Writes all of it; the memory for the table is given back when that is written.
+    /// Writes the archive; the memory of the table is given back once that is written.
     fn write(&self, sink: &mut Sink, sweep: &[u8], memory: Place) -> io::Result<()> {
         let mut zip = ZipWriter::new_stream(&mut *sink);
         let text = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
@@ -142,7 +142,7 @@ impl Archive {
                     if !self.wanted.as_ref().is_none_or(|wanted| wanted.contains(&artifact.name)) {
                         continue;
                     }
-                    // One file that cannot be read must not cost all others.
+                    // One unreadable file must not prevent the others.
                     match self.verified(key, artifact) {
                         Ok(stored) => {
                             self.write_artifact(zip, *ordinal, artifact, &stored)?;
@@ -159,7 +159,7 @@ impl Archive {
         }
     }
 
-    /// A file that is there and whole: once it is begun in the archive it can no longer be left out.
+    /// Verifies a file in advance: once begun in the archive it can no longer be left out.
     fn verified(&self, key: &WorkKey, artifact: &Artifact) -> Result<Stored> {
         let _runtime = self.handle.enter();
         let stored = Stored::new(&self.store, key, artifact.clone())?;
@@ -175,7 +175,7 @@ impl Archive {
         stored: &Stored,
     ) -> io::Result<()> {
         let extension = if artifact.media_type == "application/json" { "json" } else { "parquet" };
-        // Parquet is compressed already.
+        // Parquet is already compressed.
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         zip.start_file(
             format!("points/{ordinal}/{}.{extension}", artifact.name),

@@ -1,4 +1,4 @@
-//! The files of a point's result as they are stored: whole or in ranges, and not again to those who have them.
+//! Stored files of a point's result: whole, in ranges, or 304 for current copies.
 
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
@@ -7,10 +7,10 @@ use drillsweep_api::{ArtifactEntry, ArtifactList, ProblemKind};
 use headers::{ETag, HeaderMapExt, IfNoneMatch, IfRange};
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 use crate::answer::json::Json;
+use crate::answer::recordings;
 use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::app::App;
@@ -18,7 +18,7 @@ use crate::app::App;
 use crate::openapi::answers::Problems;
 use crate::route::results::PointPath;
 
-/// Which file.
+/// Path of a file.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
 pub(crate) struct ArtifactPath {
@@ -27,13 +27,12 @@ pub(crate) struct ArtifactPath {
     /// Number of the point in the sweep, from 1.
     #[cfg_attr(feature = "openapi", param(minimum = 1))]
     n: u32,
-    /// Name of the file, as the list of files has it; it may end as the file's link does, in `.parquet` or `.json`, so that what is
-    /// saved under the link's name has its extension.
+    /// Name of the file in the list of files, optionally with the extension of its link (`.parquet`, `.json`).
     #[cfg_attr(feature = "openapi", param(example = "history.parquet"))]
     name: String,
 }
 
-/// The files of a point's result
+/// Files of a point's result
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -49,7 +48,7 @@ pub(crate) async fn list(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
 ) -> Result<Json<ArtifactList>> {
-    let key = artifact::result_key(&app.store, &id, n).await?;
+    let key = recordings::result_key(&app.store, &id, n).await?;
     let entry = |artifact: drillsweep_store::Artifact| {
         Ok(ArtifactEntry {
             link: format!(
@@ -71,8 +70,8 @@ pub(crate) async fn list(
 
 /// One file of a point's result, byte for byte
 ///
-/// Its `ETag` is the BLAKE3 hash of its content. `Range` brings one range of bytes; of several ranges asked for at once
-/// the whole file is the answer, as RFC 9110 allows.
+/// Its `ETag` is the BLAKE3 hash of its contents. `Range` returns one range of bytes; several ranges return the whole file, as RFC 9110
+/// allows.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -105,9 +104,9 @@ pub(crate) async fn show(
     Path(ArtifactPath { id, n, name }): Path<ArtifactPath>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let key = artifact::result_key(&app.store, &id, n).await?;
+    let key = recordings::result_key(&app.store, &id, n).await?;
     let ending = [PARQUET, JSON].into_iter().find_map(|ending| Some((name.strip_suffix(ending)?, ending)));
-    let stored = artifact::find(&app.store, &key, ending.map_or(&name, |(stem, _)| stem)).await?;
+    let stored = recordings::find(&app.store, &key, ending.map_or(&name, |(stem, _)| stem)).await?;
     if let Some((stem, ending)) = ending.filter(|(_, ending)| *ending != extension(&stored.media_type)) {
         let detail =
             format!("{stem} is kept as {stem}{}, not as {stem}{ending}", extension(&stored.media_type));
@@ -117,7 +116,7 @@ pub(crate) async fn show(
     let stored = Stored::new(&app.store, &key, stored)?;
     let length = stored.length();
     let tag = format!("\"{}\"", stored.blob());
-    let etag: ETag = tag.parse().map_err(|_| Error::internal("a blob's name that is no entity tag"))?;
+    let etag: ETag = tag.parse().map_err(|_| Error::internal("a blob's name is no ETag"))?;
     let tag = HeaderValue::try_from(tag).map_err(|error| Error::internal(&error))?;
     if headers.typed_get::<IfNoneMatch>().is_some_and(|known| !known.precondition_passes(&etag)) {
         return Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, tag)]).into_response());
@@ -128,10 +127,10 @@ pub(crate) async fn show(
         (header::CONTENT_TYPE, media_type),
         (header::ETAG, tag),
         (header::ACCEPT_RANGES, HeaderValue::from_static("bytes")),
-        // The point may be recomputed; checking whether the copy is current costs little.
+        // The point may be recomputed; revalidation is cheap.
         (header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache")),
     ];
-    // What is not a range of bytes is to be ignored (RFC 9110 section 14.2), and of several ranges the whole is the answer.
+    // Other units are ignored (RFC 9110 section 14.2), and several ranges return the whole file.
     let ranges = range.and_then(|range| http_range_header::parse_range_header(range).ok());
     let Ok(ranges) = ranges.map(|ranges| ranges.validate(length)).transpose() else {
         return Ok(not_satisfiable(length));
@@ -155,7 +154,7 @@ pub(crate) async fn show(
 const PARQUET: &str = ".parquet";
 const JSON: &str = ".json";
 
-/// How the name of a saved file of this type ends.
+/// Extension of files of a media type.
 fn extension(media_type: &str) -> &'static str {
     match media_type {
         "application/json" => JSON,

@@ -1,4 +1,4 @@
-//! Whether the service lives, and whether it can work.
+//! Health checks.
 
 use std::time::Duration;
 
@@ -12,13 +12,13 @@ use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
-/// How long an answer holds: everybody may ask, and each try writes to the disk.
+/// Time for which a result is kept, since each check writes to the disk, and anybody may request one.
 const FRESH: Duration = Duration::from_secs(1);
 
-/// How long the store may take: a writer with a big sweep is given its time.
+/// Timeout of the store, long enough for a writer with a large sweep.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Whether the process answers at all
+/// Check that the process answers
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -34,10 +34,10 @@ pub(crate) async fn alive() -> Json<Health> {
     Json(Health { status: "ok".to_owned() })
 }
 
-/// Whether the service can work
+/// Check that the service can work
 ///
-/// A scratch point is queued and claimed as a worker would, and taken back; a scratch blob is written, read and
-/// deleted. It is not ready either if submissions wait and none has been expanded for 15 s.
+/// A scratch point is queued, claimed and removed; a scratch blob is written, read and deleted. The service is not ready either if
+/// submissions wait and none has been expanded for 15 s.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -51,7 +51,7 @@ pub(crate) async fn alive() -> Json<Health> {
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
     if app.expansions.is_stuck() {
-        return Err(Error::unavailable("expansions of sweeps wait, and none has begun for long"));
+        return Err(Error::unavailable("submissions wait, and none has been expanded for 15 s"));
     }
     let mut seen = app.readiness.0.lock().await;
     if seen.is_none_or(|instant| instant.elapsed() > FRESH) {

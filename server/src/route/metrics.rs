@@ -1,4 +1,4 @@
-//! Counts of the service for operators, on a listener of its own.
+//! Metrics of the service, on a separate listener.
 
 use axum::Router;
 
@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::exposition;
 use crate::route::status::WORKER_SILENCE;
 
-/// `/metrics`, for the listener of its own.
+/// Route `/metrics` of the separate listener.
 pub(crate) fn router(app: App) -> Router {
     exposition::router(move || {
         let app = app.clone();

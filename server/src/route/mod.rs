@@ -1,10 +1,9 @@
-//! The routes, a file for each thing that is asked about.
+//! Routes, a file for each resource.
 
-pub(crate) mod all_events;
+pub(crate) mod analysis;
 pub(crate) mod cost;
 pub(crate) mod events;
 pub(crate) mod export;
-pub(crate) mod feed;
 pub(crate) mod files;
 pub(crate) mod health;
 pub(crate) mod metrics;
@@ -12,7 +11,6 @@ pub(crate) mod points;
 pub(crate) mod quantities;
 pub(crate) mod results;
 pub(crate) mod scenarios;
-pub(crate) mod scene;
 pub(crate) mod session;
 pub(crate) mod snapshots;
 pub(crate) mod spectrogram;

@@ -18,7 +18,7 @@ use crate::app::App;
 use crate::openapi::answers::{PointPageResponse, Problems};
 use crate::route::results::PointPath;
 
-/// Which points are listed.
+/// Query of a list of points.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -39,7 +39,7 @@ pub(crate) struct ListQuery {
     fields: Option<Vec<String>>,
 }
 
-/// The points of a sweep, in order
+/// Points of a sweep, in order
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -74,7 +74,7 @@ pub(crate) async fn list(
         return Err(records::no_such_sweep(&id));
     }
     let states = query.state.map_or_else(Vec::new, records::work_states);
-    // One more than asked for shows whether there is a next page.
+    // One more than requested shows if there is a next page.
     let mut records = app.store.points(&id, &states, after, i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);
@@ -99,14 +99,14 @@ fn select(row: &PointRow, fields: &[String]) -> Result<Map<String, Value>> {
     Ok(fields.iter().filter_map(|name| Some((name.clone(), whole.remove(name)?))).collect())
 }
 
-/// Which failures are listed.
+/// Query of the list of failures.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FailuresQuery {
     /// Only points of sweeps of this owner.
     owner: Option<String>,
-    /// Only points that failed in this way.
+    /// Only failures of this class.
     #[cfg_attr(feature = "openapi", param(inline))]
     class: Option<FailureClass>,
     /// Entries in a page; absent means 50.
@@ -118,10 +118,10 @@ pub(crate) struct FailuresQuery {
     cursor: Option<String>,
 }
 
-/// The failed points of all sweeps, the latest first
+/// Failed points of all sweeps, the latest first
 ///
-/// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
-/// of a sweep again. Reference runs that only verify a point are at `GET /v1/sweeps/{id}/verification`.
+/// Points with a final failure, and points that crashed three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those of a sweep
+/// again. Failed reference runs are at `GET /v1/sweeps/{id}/verification`.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -141,7 +141,7 @@ pub(crate) async fn failures(
     let after = query.cursor.as_deref().map(failure_place).transpose()?;
     let filter =
         FailureFilter { owner: query.owner.as_deref(), class: query.class.map(FailureClass::as_str) };
-    // One more than asked for shows whether there is a next page.
+    // One more than requested shows if there is a next page.
     let mut records = app.store.failures(&filter, after.as_ref(), i64::from(limit) + 1).await?;
     let is_last = records.len() <= limit as usize;
     records.truncate(limit as usize);

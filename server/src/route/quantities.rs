@@ -1,4 +1,4 @@
-//! The vocabulary: what the names of columns and of a scenario's fields stand for.
+//! Vocabulary of quantities: columns and fields of scenarios.
 
 use std::sync::LazyLock;
 
@@ -13,9 +13,9 @@ use crate::openapi::answers::{Conditional, Problems};
 
 /// Meaning of columns and fields, with their units
 ///
-/// By name: of columns without the number of a node (`u_49` is `u`) and of a spectrum window (`line_amplitude_49_w1`), and without what an
-/// ensemble or a reference makes of them (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, but for frequencies); of a
-/// scenario's fields by their path without indices. Needs no token, like this document.
+/// Keys are names of columns without node (`u_49` is `u`), spectrum window (`line_amplitude_49_w1`) and prefixes of ensembles and
+/// references (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, except for frequencies), and paths of a scenario's
+/// fields without indices. Needs no token.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -27,7 +27,7 @@ use crate::openapi::answers::{Conditional, Problems};
         security(()),
         responses(
             (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
-            (status = 304, description = "The copy is right"),
+            (status = 304, description = "The copy is current"),
             Problems
         )
     )

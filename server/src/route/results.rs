@@ -1,4 +1,4 @@
-//! The tables of one point's result, and the views cut from them.
+//! Tables of a point's result, and views of them.
 
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
@@ -14,11 +14,12 @@ use drillsweep_table::{Source as _, Table};
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
-use crate::answer::artifact::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat, Tag};
+use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
 use crate::answer::need::Need;
+use crate::answer::recordings::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
@@ -26,7 +27,7 @@ use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems, TableResponse};
 
-/// Which point's result.
+/// Path of a point.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
 pub(crate) struct PointPath {
@@ -37,7 +38,7 @@ pub(crate) struct PointPath {
     pub(crate) n: u32,
 }
 
-/// How a table is served.
+/// Query of a table.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -51,7 +52,7 @@ pub(crate) struct TableQuery {
     pub(crate) fields: Option<Vec<String>>,
 }
 
-/// How a table is served that can be shown as a picture.
+/// Query of a table that can be drawn as a picture.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -59,7 +60,7 @@ pub(crate) struct PictureQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[cfg_attr(feature = "openapi", param(inline))]
     pub(crate) format: Option<PictureFormat>,
-    /// Only these columns, separated by commas; of a picture, what it shows.
+    /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     pub(crate) fields: Option<Vec<String>>,
@@ -87,7 +88,7 @@ pub(crate) async fn profile(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
-    let profile = artifact::stored(&app.store, &id, n, tables::PROFILE.name).await?;
+    let profile = recordings::stored(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
     if !format.is_picture() {
         return part(&app, profile, fields, format, file_name, &headers).await;
@@ -107,7 +108,7 @@ pub(crate) async fn profile(
     .await
 }
 
-/// The static equilibrium, node by node
+/// Static equilibrium, node by node
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -149,7 +150,7 @@ pub(crate) async fn contacts(
     whole_table(&tables::CONTACTS, app, path, query, headers).await
 }
 
-/// The energy ledger over the run
+/// Energy ledger over the run
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -191,7 +192,7 @@ pub(crate) async fn course(
     whole_table(&tables::COURSE, app, path, query, headers).await
 }
 
-/// A table as the worker stored it; Parquet goes out as it lies there.
+/// A stored table; Parquet is sent without conversion.
 async fn whole_table(
     &Layout { name, .. }: &Layout,
     State(app): State<App>,
@@ -200,11 +201,11 @@ async fn whole_table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(query.format, &headers)?;
-    let table = artifact::stored(&app.store, &id, n, name).await?;
+    let table = recordings::stored(&app.store, &id, n, name).await?;
     part(&app, table, query.fields, format, file_name(&id, n, name), &headers).await
 }
 
-/// A stored table, or some columns of it, in a format that is no picture; Parquet goes out as it lies there.
+/// A stored table, or some columns of it, in a format other than a picture; Parquet is sent without conversion.
 async fn part(
     app: &App,
     stored: Stored,
@@ -231,7 +232,7 @@ async fn part(
         .await
 }
 
-/// A table as it is stored.
+/// A stored table as Parquet.
 pub(super) async fn whole_file(
     app: &App,
     stored: Stored,
@@ -249,7 +250,7 @@ pub(super) async fn whole_file(
     Ok(response)
 }
 
-/// Which part of the recorded histories is wanted.
+/// Query of recorded histories.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -270,18 +271,18 @@ pub(crate) struct HistoryQuery {
     /// End of the window \[s\], not included. A window that ends after the history is cut there (attribute `window_cut_at`).
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
-    /// At most so many rows; which of them stay, `decimation` says. Absent means all.
+    /// Largest number of rows, which `decimation` chooses. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
     #[cfg_attr(feature = "openapi", param(minimum = 1))]
     max_points: Option<u32>,
-    /// Which rows stay of more than `max_points`. With `minmax` these are at least two for each column besides `time`.
+    /// Choice of rows beyond `max_points`. `minmax` keeps at least two for each column except `time`.
     #[serde(default)]
     #[cfg_attr(feature = "openapi", param(inline))]
     decimation: Decimation,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[cfg_attr(feature = "openapi", param(inline))]
     format: Option<PictureFormat>,
-    /// Only these columns, separated by commas; of a picture, what it shows.
+    /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
     fields: Option<Vec<String>>,
@@ -299,14 +300,14 @@ impl HistoryQuery {
     }
 }
 
-/// The recorded motion of the recorded nodes
+/// Recorded motion of the recorded nodes
 ///
-/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...; where torsion is solved for
-/// also `rotation_speed_N`, the rotation imposed at the top and the rate of twist together \[rad/s\], and `torque_N`, the torque in the
-/// element above the node, at the first node below it \[N m\], negative where it opposes clockwise rotation. Those two it has of the bit as well. A picture shows u and v,
-/// and where the string twists rotation speed \[rpm\] and torque at the bit, of the history or else of the snapshots; where neither has the
-/// bit, it says so and shows those of the lowest recorded node. Of a chosen node it shows what belongs to that node, and of `fields` these
-/// alone. The legend says at which depth and to which side. It shows 2,000,000 values at most.
+/// Columns `time` and, for each node N, `u_N`, `v_N`, `w_N`, `theta_z_N` and their rates `u_rate_N`, ...; if torsion is solved for also
+/// `rotation_speed_N`, the sum of the imposed rotation and the rate of twist \[rad/s\], and `torque_N`, the torque in the element above the
+/// node, of the first node in that below it \[N m\], negative if it opposes clockwise rotation. These two exist for the bit as well. A
+/// picture shows u and v; with torsion also rotation speed \[rpm\] and torque at the bit, from the history or else the snapshots, or, as
+/// its text then states, of the lowest recorded node. For a chosen node it shows the columns of that node, and with `fields` those alone.
+/// The legend gives depths and directions. A picture shows at most 2,000,000 values.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -338,7 +339,7 @@ pub(crate) async fn history(
     let title = caption(&app.store, &id, n, "History").await?;
     let shows_bit = format.is_picture() && choice.is_none() && query.fields.is_none();
     let snapshots = match shows_bit {
-        true => artifact::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
+        true => recordings::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
         false => None,
     };
     let snapshots = snapshots.map(|stored| Snapshots::new(stored, &recording.statics)).transpose()?;
@@ -410,7 +411,7 @@ pub(crate) async fn history(
     .await
 }
 
-/// The lowest node of a recorded string, with what `snapshots` tell of its rotation in a window, of at most so many of them.
+/// Lowest node of a recorded string, with its rotation from `snapshots` in a window.
 fn bit(
     recording: &Recording,
     snapshots: Option<&Snapshots>,
@@ -424,7 +425,7 @@ fn bit(
     Ok(Some(chart::Bit { node, measured_depth, snapshots: rotation.flatten() }))
 }
 
-/// The rows of a part of a history that have the extremes of its columns.
+/// Rows with the extremes of the columns of a part of a history.
 fn rows_of_extremes(history: &Stored, part: &Cut<StoredFile>, most: usize) -> Result<Table> {
     let fewest = Extremes::fewest(part.layout());
     if most < fewest {
@@ -438,25 +439,25 @@ fn rows_of_extremes(history: &Stored, part: &Cut<StoredFile>, most: usize) -> Re
     part.rows_at(&extremes.finish()).map_err(|error| history.problem(error))
 }
 
-/// Bytes of memory that some rows of a history take, at most so many; stored they usually take half of that.
+/// Bound on the memory of rows of a history \[bytes\]; stored they usually take half of that.
 fn memory_of_rows(history: &Stored, most: Option<u32>) -> u64 {
     let rows = most.map_or(0, u64::from).min(history.rows());
     2 * history.length() / history.rows().max(1) * rows
 }
 
-/// Values that a picture of a history shows at most.
+/// Largest number of values in a picture of a history.
 const MOST_SHOWN: usize = 2_000_000;
 
-/// Columns that a picture takes from the snapshots of the bit: time, rotation speed and torque.
+/// Columns of a picture from the snapshots of the bit: time, rotation speed and torque.
 const COLUMNS_OF_BIT: usize = 3;
 
-/// Snapshots that it takes them from at most.
+/// Largest number of snapshots in a picture.
 const MOST_SNAPSHOTS_SHOWN: usize = MOST_SHOWN / COLUMNS_OF_BIT;
 
-/// Bytes of memory that drawing one of the values takes.
+/// Memory for drawing a value \[bytes\].
 const MEMORY_OF_SHOWN: u64 = 64;
 
-/// Refuses a picture in which nobody could make out anything.
+/// Refuses an illegible picture.
 fn check_shown(rows: usize, columns: usize) -> Result<()> {
     let values = rows.saturating_mul(columns);
     if values <= MOST_SHOWN {
@@ -469,7 +470,7 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
     Err(Error::parameter("max_points", None, detail))
 }
 
-/// Which part of one node's orbit is wanted.
+/// Query of an orbit.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -490,13 +491,12 @@ pub(crate) struct OrbitQuery {
     /// End of the window \[s\], not included. A window that ends after the history is cut there (attribute `window_cut_at`).
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
-    /// At most so many points, 4 or more; those with the extremes of u and v in each part of the window stay.
-    /// Absent means all.
+    /// Largest number of points, from 4: those with the extremes of u and v in each part of the window. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
     #[cfg_attr(feature = "openapi", param(minimum = 4))]
     max_points: Option<u32>,
-    /// Of a picture: whether the motion alone is shown, with the whole hole as an inset; absent means where the motion is below a
-    /// tenth of the hole.
+    /// For a picture: true shows the motion alone, with the whole hole as an inset; absent means true if the motion is below a tenth of the
+    /// hole.
     #[serde(default, deserialize_with = "value::choice")]
     zoom: Option<bool>,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
@@ -504,7 +504,7 @@ pub(crate) struct OrbitQuery {
     format: Option<PictureFormat>,
 }
 
-/// The path of one node across the hole
+/// Path of a node across the hole
 ///
 /// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
 /// `samples`, the number of samples in the window.
@@ -554,7 +554,7 @@ pub(crate) async fn orbit(
     .await
 }
 
-/// Which full spectrum is wanted.
+/// Query of a full spectrum.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -583,7 +583,7 @@ pub(crate) struct SpectrumQuery {
     #[serde(default = "default_range", deserialize_with = "range")]
     #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0))]
     range_hz: f64,
-    /// At most so many of the highest peaks are listed.
+    /// Largest number of listed peaks, the highest first.
     #[serde(default = "default_peaks", deserialize_with = "peaks")]
     #[cfg_attr(feature = "openapi", param(default = 10))]
     peaks: usize,
@@ -610,13 +610,13 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
     text.parse().map_err(|_| serde::de::Error::custom("must be a whole number, 0 or more"))
 }
 
-/// The full spectrum of one node's orbit
+/// Full spectrum of a node's orbit
 ///
-/// Of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward.
-/// Columns `frequency`, `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the
-/// highest peaks with their whirl direction, frequency and amplitude interpolated between the bins. Lines outside the range enter
-/// neither. The attribute `resolved_hz` is the frequency up to which the run's steps resolve vibrations; each peak says whether it
-/// `is_resolved`, and a picture shades what lies beyond. Of a run that kept spectra only the window is one of its scenario's.
+/// Spectrum of u + i v over a half-open window: positive frequencies are forward whirl, negative ones backward. Columns `frequency`,
+/// `amplitude` (|Z|/N) and `peak_to_peak` (2|Z|/N); the attribute `peaks` lists the highest peaks with whirl direction, and frequency and
+/// amplitude interpolated between bins. Neither has lines outside the range. The attribute `resolved_hz` is the frequency up to which the
+/// run's steps resolve vibrations; peaks below it are `is_resolved`, and a picture shades the frequencies above. If a run kept only
+/// spectra, the window is one of its scenario.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -678,7 +678,7 @@ pub(crate) fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
     }
 }
 
-/// The title of a picture: what it shows of which point.
+/// Title of a picture: its contents and point.
 async fn caption(store: &Store, id: &str, n: u32, what: &str) -> Result<String> {
     let parameters = match store.point(id, n.into()).await? {
         Some(point) => records::parameters(&point.parameters_json)?,

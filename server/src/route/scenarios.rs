@@ -15,11 +15,11 @@ use crate::guard::caller::Caller;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
-/// Memory at most that reading a byte of a scenario file takes, and a whole one \[bytes\].
+/// Bounds on the memory for parsing a byte of a scenario file, and a whole file \[bytes\].
 const MEMORY_OF_BYTE: usize = 100;
 const MEMORY_OF_FILE: usize = MEMORY_OF_BYTE * LIMITS.scenario_file_bytes;
 
-/// The preset scenarios
+/// Preset scenarios
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -36,8 +36,8 @@ pub(crate) async fn list() -> Json<ScenarioList> {
 
 /// Read a scenario file
 ///
-/// For forms: the text of a file as commands take it, TOML or JSON, answered with what it asks for as a request says it, what the file
-/// leaves out filled in. Nothing is stored, and whether it can be simulated is what a dry run of a sweep says.
+/// For forms: converts a scenario file of the commands, TOML or JSON, to the scenario of a request, with defaults filled in. Nothing is
+/// stored; a dry run of a sweep validates the scenario.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -1,4 +1,4 @@
-//! Sessions: how a browser logs in. It sends a token once, and keeps a cookie that its scripts cannot read.
+//! Sessions of browsers, which send a token once and keep a cookie that scripts cannot read.
 
 use axum::Extension;
 use axum::extract::State;
@@ -17,12 +17,12 @@ use crate::listen::Peer;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
-/// The budget that all logins are taken from; no owner has this name.
+/// Rate limit of all logins; no owner has this name.
 const LOGINS: &str = "\0logins";
 
-/// Whether there is a session
+/// The session of a browser
 ///
-/// Everybody may ask. Without tokens there are no sessions, and none is needed.
+/// Needs no token. While no tokens exist, there are no sessions, and none is needed.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -45,8 +45,8 @@ pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<i
 
 /// Log in by a token
 ///
-/// For browsers: the answer sets a cookie that stands for the token from then on, until it expires after 30 days, or with the token, or
-/// is deleted. Programs send their token with each request instead.
+/// For browsers: the answer sets a cookie that replaces the token, until it expires after 30 days or with the token, or is deleted.
+/// Programs send their token with each request instead.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -96,12 +96,12 @@ pub(crate) async fn close(State(app): State<App>, headers: HeaderMap) -> Result<
     Ok((StatusCode::NO_CONTENT, set_cookie(&headers, "", 0)))
 }
 
-/// Not for scripts, not for requests from pages of other sites, and where the browser came by https, for that alone.
+/// Inaccessible to scripts and not sent with requests of other sites; `Secure` if the browser uses https.
 fn set_cookie(headers: &HeaderMap, value: &str, seconds: i64) -> [(HeaderName, HeaderValue); 2] {
     let is_https = headers.get("x-forwarded-proto").is_some_and(|protocol| protocol == "https");
     let secure = if is_https { "; Secure" } else { "" };
     let cookie = format!("{COOKIE}={value}; HttpOnly; SameSite=Strict; Path=/; Max-Age={seconds}{secure}");
-    // Of visible ASCII characters alone.
+    // It has visible ASCII characters alone.
     let cookie = HeaderValue::try_from(cookie).unwrap_or_else(|_| HeaderValue::from_static(""));
     [(header::SET_COOKIE, cookie), (header::CACHE_CONTROL, HeaderValue::from_static("no-store"))]
 }

@@ -7,17 +7,18 @@ use drillsweep_api::view::history;
 use drillsweep_table::tables;
 use serde::Deserialize;
 
-use crate::answer::artifact;
 use crate::answer::error::{Error, Result};
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, TableFormat, Tag};
+use crate::answer::format::{self, Answer, Format, TableFormat};
+use crate::answer::recordings;
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name, whole_file};
 
-/// Which part of the snapshots is wanted.
+/// Query of snapshots.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -32,7 +33,7 @@ pub(crate) struct SnapshotsQuery {
     #[serde(default, deserialize_with = "value::count")]
     #[cfg_attr(feature = "openapi", param(minimum = 1))]
     node: Option<u32>,
-    /// At most so many snapshots: every k-th one stays, with all its nodes. Absent means all.
+    /// Largest number of snapshots; every k-th one is kept, with all its nodes. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
     #[cfg_attr(feature = "openapi", param(minimum = 1))]
     max_frames: Option<u32>,
@@ -57,9 +58,9 @@ impl SnapshotsQuery {
 
 /// Snapshots of the whole string in motion
 ///
-/// A row a node, from the top, snapshot after snapshot; kept where the scenario asks for them (`recording.snapshots`). There are no
-/// columns of motions that were not solved for. Attributes: `nodes`, the rows of a snapshot, 1 of one `node`; `snapshots`, the number of them in
-/// the window before `max_frames` thins them; `first`, the time of the first, and `interval`, from one that is served to the next \[s\].
+/// A row a node, from the top, snapshot after snapshot; kept if the scenario requests them (`recording.snapshots`). Motions that were not
+/// solved for have no columns. Attributes: `nodes`, rows of a snapshot (1 for one `node`); `snapshots`, their number in the window before
+/// thinning by `max_frames`; `first`, time of the first one \[s\]; `interval` between those returned \[s\].
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -80,11 +81,11 @@ pub(crate) async fn show(
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;
     let file_name = file_name(&id, n, tables::SNAPSHOTS.name);
-    let stored = artifact::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
+    let stored = recordings::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
     if format == Format::Parquet && query.is_whole() {
         return whole_file(&app, stored, &file_name, &headers).await;
     }
-    let statics = artifact::stored(&app.store, &id, n, tables::STATICS.name).await?;
+    let statics = recordings::stored(&app.store, &id, n, tables::STATICS.name).await?;
     let snapshots = Snapshots::new(stored, &statics)?;
     let node = query.node.map(|node| node as usize);
     if let Some(node) = node.filter(|node| *node > snapshots.nodes()) {

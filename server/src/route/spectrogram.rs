@@ -1,4 +1,4 @@
-//! The spectrogram of one node's orbit.
+//! Spectrogram of a node's orbit.
 
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -7,17 +7,18 @@ use drillsweep_api::view::spectrogram::{MOST_AMPLITUDES, SpectrogramRequest, spe
 use drillsweep_api::view::{node, spectrum};
 use serde::{Deserialize, Deserializer};
 
-use crate::answer::artifact::Recording;
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat, Tag};
+use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::recordings::Recording;
 use crate::answer::records;
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
-/// Which spectrogram is wanted.
+/// Query of a spectrogram.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -32,19 +33,18 @@ pub(crate) struct SpectrogramQuery {
     /// Take the recorded node nearest to `depth`, however far.
     #[serde(default, deserialize_with = "value::truth")]
     nearest: bool,
-    /// Start of what is looked at \[s\], included.
+    /// Start of the analysed part \[s\], included.
     #[serde(default, deserialize_with = "value::number")]
     from: Option<f64>,
-    /// End of what is looked at \[s\], not included.
+    /// End of the analysed part \[s\], not included.
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
-    /// Length of each window \[s\]; absent means 4 s, and a quarter of the whole where that is shorter. Frequencies are resolved to 1
-    /// over it.
+    /// Length of each window \[s\]; absent means 4 s, or a quarter of the whole if that is shorter. The resolution in frequency is 1 over
+    /// it.
     #[serde(default, deserialize_with = "length")]
     #[cfg_attr(feature = "openapi", param(exclusive_minimum = 0.0))]
     window_s: Option<f64>,
-    /// From the beginning of a window to that of the next \[s\]; absent means an eighth of a window, and more where that would be over
-    /// 200 windows.
+    /// Distance between the beginnings of windows \[s\]; absent means an eighth of a window, or more if there would be over 200 windows.
     #[serde(default, deserialize_with = "length")]
     #[cfg_attr(feature = "openapi", param(exclusive_minimum = 0.0))]
     step_s: Option<f64>,
@@ -80,12 +80,12 @@ fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
     }
 }
 
-/// The full spectrum of one node's orbit over time
+/// Full spectrum of a node's orbit over time
 ///
-/// Of windows that follow each other through the recorded motion of the node, each as `spectrum` has it: window after window, in each
-/// ascending in frequency; positive frequencies are forward whirl, negative ones backward. The time is the middle of the window.
-/// Attributes: `node`, `measured_depth`, `windows`, `samples` of each, `window_s` and `step_s` as taken, `resolution` \[Hz\], `window`,
-/// and `resolved_hz`, the frequency up to which the run's steps resolve vibrations. It has 1,000,000 amplitudes at most.
+/// Spectra, as of `spectrum`, of successive windows of the recorded motion: window after window, each ascending in frequency; positive
+/// frequencies are forward whirl, negative ones backward. The time is the middle of the window. Attributes: `node`, `measured_depth`,
+/// `windows`, `samples` of each, `window_s` and `step_s` as used, `resolution` \[Hz\], `window`, and `resolved_hz`, the frequency up to
+/// which the run's steps resolve vibrations. It has at most 1,000,000 amplitudes.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -103,7 +103,7 @@ pub(crate) async fn show(
     Query(query): Query<SpectrogramQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    /// Bytes of an amplitude with its time and frequency, in memory and as it is written.
+    /// Bytes of an amplitude with time and frequency, in memory and in writing.
     const OF_AMPLITUDE: u64 = 64;
     let format = Format::choose(query.format, &headers)?;
     check_window(query.from, query.to)?;

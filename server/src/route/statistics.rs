@@ -8,16 +8,17 @@ use drillsweep_api::view::statistics::StatisticsTable;
 use drillsweep_table::tables::STATISTICS;
 use serde::Deserialize;
 
-use crate::answer::artifact::{Recording, mark_cut};
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat, Tag};
+use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::recordings::{Recording, mark_cut};
 use crate::app::App;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
-/// Which nodes and which window.
+/// Query of statistics.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -49,7 +50,7 @@ pub(crate) struct StatisticsQuery {
 
 /// Statistics of orbits over a window
 ///
-/// One row a recorded node, from all samples of the half-open window, whatever is shown of them; the attribute `samples` is their number.
+/// A row a recorded node, from all samples of the half-open window; the attribute `samples` is their number.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -15,10 +15,10 @@ use crate::app::retention::RetentionConfig;
 #[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
-/// Workers that have been silent for longer are not listed: five times the lease's renewal.
+/// Silence after which workers are not listed any more: five times the interval of a lease's renewal.
 pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);
 
-/// The worker processes
+/// Worker processes
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -45,7 +45,7 @@ pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> 
     Ok(Json(WorkerList { workers: records.into_iter().map(worker).collect::<Result<_>>()? }))
 }
 
-/// The queue over all sweeps
+/// Queue of all sweeps
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -66,7 +66,7 @@ pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     }))
 }
 
-/// How long data are kept, and when what need not be kept was deleted last
+/// Retention of data, and the last garbage collection
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -98,7 +98,7 @@ pub(crate) async fn retention(State(app): State<App>) -> Result<Json<Retention>>
     }))
 }
 
-/// The bounds of what the service accepts
+/// Limits of requests
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(

@@ -1,4 +1,4 @@
-//! Results of verifying a sample of a sweep's points.
+//! Verification of a sample of a sweep's points.
 
 use std::collections::HashMap;
 
@@ -21,21 +21,21 @@ use crate::app::App;
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::TableQuery;
 
-/// Bytes of memory that a point takes in a table of its sweep, besides its summary.
+/// Memory of a point in the table of its sweep, without its summary \[bytes\].
 const MEMORY_OF_POINT: u64 = 256;
 
-/// Memory for a table of a sweep of so many points \[bytes\]. A summary's field takes eight bytes in a column, twice that while the column
-/// grows, where its name and value take at least forty in the summary's JSON; one point stands for all.
+/// Memory for the table of a sweep \[bytes\], from the summary of one point. A field takes eight bytes in a column, twice that while the
+/// column grows, and with its name at least forty in the summary's JSON.
 pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result<u64> {
     let one = app.store.points(id, &[WorkState::Done], 0, 1).await?;
     let summary = one.first().and_then(|point| point.summary_json.as_deref()).map_or(0, str::len) as u64;
     Ok(points.saturating_mul(MEMORY_OF_POINT + summary * 2 / 5))
 }
 
-/// Points of a sweep's table that are read at once.
+/// Number of points of a sweep's table that are read at once.
 const PAGE: i64 = 500;
 
-/// The points of a sweep that are verified, and what they show.
+/// Verified points of a sweep, and findings.
 #[derive(Default)]
 pub(crate) struct Verified {
     pub(crate) points: Vec<VerifiedPoint>,
@@ -43,11 +43,11 @@ pub(crate) struct Verified {
 }
 
 impl Verified {
-    /// Loads the verified points of a sweep; none if it verifies none.
+    /// Loads the verified points of a sweep; empty if it verifies none.
     pub(crate) async fn load(store: &Store, id: &str) -> Result<Self> {
         let records = store.verifications(id).await?;
         let Some(first) = records.first() else { return Ok(Self::default()) };
-        // A preset is the same for all points of a sweep, and nothing else promises anything: one of them is enough.
+        // The accuracy preset, which alone makes a promise, is the same for all points, so that one is enough.
         let scenario = store.point(id, first.ordinal).await?.and_then(|point| point.scenario);
         blocking(move || {
             let points: Vec<VerifiedPoint> =
@@ -59,8 +59,8 @@ impl Verified {
         .await
     }
 
-    /// The sweep's table, with the biases of the points that are verified, put into one that may keep the values of some columns alone. It
-    /// is read in pages, each as it is at that moment; for a thread that may wait.
+    /// Adds the points of the sweep, with biases of verified ones, to `table`, which may keep only some columns. Pages are read one after
+    /// the other, each in its present state. Blocks.
     pub(crate) fn points(
         &self,
         mut table: PointsTable,
@@ -78,7 +78,7 @@ impl Verified {
         loop {
             let mut page = runtime.block_on(next).map_err(|error| Error::internal(&error))??;
             let Some(last) = page.last() else { break };
-            // The database reads on while these are parsed.
+            // The database reads the next page while this one is parsed.
             next = read(last.ordinal);
             for record in &mut page {
                 let biases = by_ordinal.get(&record.ordinal).map(|point| point.biases()).unwrap_or_default();
@@ -86,14 +86,14 @@ impl Verified {
                 table.push(point).map_err(|error| Error::internal(&error))?;
             }
         }
-        // A sweep that is deleted between two pages has no further ones: what there is of it is not its table.
+        // If the sweep was deleted between two pages, the points so far are not its table.
         if runtime.block_on(store.sweep_version(id))?.is_none() {
             return Err(records::no_such_sweep(id));
         }
         Ok(table)
     }
 
-    /// The table of the verified points.
+    /// Table of the verified points.
     pub(crate) fn table(&self) -> drillsweep_table::Table {
         verification::verification(&self.points, &self.findings)
     }
@@ -101,12 +101,12 @@ impl Verified {
 
 /// Results of verifying a sample of the points
 ///
-/// One row a point that the request's `verify` has chosen: `ordinal`, its parameters, the `state` of the reference run, and for each
-/// statistic NAME (orbit sizes, standard deviations of the radius, mean radii, frequencies of the strongest lines; of ensembles the
-/// means over the members) the point's value, that of the reference as `reference_NAME`, and the bias as `bias_NAME`: relative to
-/// the reference, of frequencies in Hz. The attribute `statistics` sums them up by NAME: how many points are `verified`, the `mean`
-/// bias with its 95 % `interval`, the `largest` with the point that has it (`largest_at`), and what the sweep's accuracy has
-/// `promised`, with the number of points `exceeding` it; `warnings` reports the latter in words. A sweep that verifies nothing has no rows.
+/// A row a verified point: `ordinal`, parameters, the `state` of the reference run, and for each statistic NAME (orbit sizes, standard
+/// deviations of the radius, mean radii, frequencies of the strongest lines; of ensembles the means over the members) the point's value,
+/// that of the reference as `reference_NAME`, and the bias as `bias_NAME`: relative to the reference, for frequencies in Hz. The attribute
+/// `statistics` summarises them by NAME: the number of points `verified`, the `mean` bias with its 95 % `interval`, the `largest` bias with
+/// its point (`largest_at`), the bound `promised` by the sweep's accuracy, and the number of points `exceeding` it; `warnings` reports the
+/// latter in words. A sweep without verification has no rows.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -150,7 +150,7 @@ mod tests {
         let config = StoreConfig::in_directory(directory.path(), Role::Server);
         let store = Store::open(&config).await.expect("a store");
         let runtime = Handle::current();
-        // As the page after the deletion finds it.
+        // The state that the page after the deletion finds.
         let read = move || {
             Verified::default().points(PointsTable::default(), &store, "deleted", &runtime).map(|_| ())
         };

@@ -1,4 +1,4 @@
-//! Reason why queued points wait: no worker is there which computes their version of the physics.
+//! Reason why queued points wait: no worker of their physics version.
 
 use drillsweep_api::{Sweep, SweepState, WaitingFor};
 
@@ -6,7 +6,7 @@ use crate::answer::error::Result;
 use crate::app::App;
 use crate::route::status::WORKER_SILENCE;
 
-/// Says of sweeps with queued points whether these wait for a worker of their version.
+/// Sets `waiting_for` of sweeps whose queued points have no worker of their physics version.
 pub(crate) async fn note_waiting(app: &App, sweeps: &mut [Sweep]) -> Result<()> {
     let queued: Vec<&str> =
         sweeps.iter().filter(|sweep| has_queued(sweep)).map(|sweep| sweep.id.as_str()).collect();
@@ -25,7 +25,7 @@ pub(crate) async fn note_waiting(app: &App, sweeps: &mut [Sweep]) -> Result<()> 
     Ok(())
 }
 
-/// Whether points of it, or runs that verify some, would begin if there were a worker.
+/// True if points or reference runs would start with a worker.
 fn has_queued(sweep: &Sweep) -> bool {
     let verifications = sweep.verification.as_ref().map_or(0, |verification| verification.counts.queued);
     sweep.state == SweepState::Running && sweep.counts.queued + verifications > 0

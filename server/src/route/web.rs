@@ -1,4 +1,4 @@
-//! The web page, and the API's document as pages: the files of `server/web/`, which come with the program, so that they need no other network.
+//! The web page and the pages of the OpenAPI document: files of `server/web/`, embedded in the program.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _};
@@ -14,15 +14,15 @@ use crate::answer::error::{Error, Result};
 use crate::answer::extract::Path;
 use crate::guard::middleware;
 
-/// Path, hash and compressed bytes of each file, and what it imports where it is a module.
+/// Path, hash, compressed bytes and imports of each file.
 const FILES: &[(&str, &str, &[u8], &[&str])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
 
-/// Content security policy of the page: it may load files and answers of this service alone. plotly.js sets styles of its elements, and
-/// makes pictures from blobs; Swagger UI sets styles, too, and has icons in its own text.
+/// Content security policy of the page, which loads from this service alone. plotly.js sets inline styles and makes pictures from blobs;
+/// Swagger UI sets inline styles and has icons as data.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 
-/// The name of all files together: the page loads files of its own version, however long a browser keeps them.
+/// Version of all files together, which is part of their paths, so that browsers can keep them without limit.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
     let mut hasher = blake3::Hasher::new();
     for (path, hash, ..) in FILES {
@@ -31,7 +31,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
     hasher.finalize().to_hex()[..16].to_owned()
 });
 
-/// A file, compressed, and as it is from when somebody first wants it so.
+/// A compressed file, and its contents once they were requested.
 struct File {
     compressed: &'static [u8],
     plain: OnceLock<Bytes>,
@@ -42,20 +42,20 @@ static BY_PATH: LazyLock<BTreeMap<&str, File>> = LazyLock::new(|| {
     FILES.iter().map(|(path, _, bytes, _)| (*path, file(*bytes))).collect()
 });
 
-/// The page on which sweeps are watched.
+/// The web page.
 pub(crate) async fn page(uri: Uri) -> Result<Response> {
     static PAGE: LazyLock<io::Result<String>> =
         LazyLock::new(|| Ok(html("index.html")?.replace("</title>\n", &format!("</title>\n{}", imports()?))));
     html_response(&PAGE, &uri)
 }
 
-/// The API's document as pages to read and try.
+/// Pages of the OpenAPI document.
 pub(crate) async fn documentation(uri: Uri) -> Result<Response> {
     static PAGE: LazyLock<io::Result<String>> = LazyLock::new(|| html("docs.html"));
     html_response(&PAGE, &uri)
 }
 
-/// A page, whose files are those of this version; empty if there is no such page.
+/// A page with the paths of this version; empty if it does not exist.
 fn html(path: &str) -> io::Result<String> {
     let text = BY_PATH.get(path).map(File::plain).transpose()?.unwrap_or_default();
     Ok(str::from_utf8(&text).map_err(io::Error::other)?.replace("\"web/", &format!("\"/web/{}/", *VERSION)))
@@ -74,7 +74,7 @@ fn html_response(page: &'static io::Result<String>, uri: &Uri) -> Result<Respons
     Ok((headers, usual(), text.as_str()).into_response())
 }
 
-/// Imports of each module of the page: it fetches those of a view at once, which a browser would find one after the other.
+/// Imports of each module, as JSON: the page loads those of a view at once, which a browser would find one after the other.
 fn imports() -> io::Result<String> {
     let imports = FILES.iter().filter(|(.., imported)| !imported.is_empty());
     let imports: BTreeMap<&str, &[&str]> = imports.map(|(path, .., imported)| (*path, *imported)).collect();
@@ -82,7 +82,7 @@ fn imports() -> io::Result<String> {
     Ok(format!("  <script type=\"application/json\" id=\"imports\">{imports}</script>\n"))
 }
 
-/// A file of the page, compressed as it is stored where the browser takes that.
+/// A file of the page, compressed if the browser accepts gzip.
 pub(crate) async fn file(
     uri: Uri,
     headers: HeaderMap,

@@ -1,6 +1,7 @@
 //! Control of a sweep by its owner after submitting it.
 
-use axum::http::{Method, StatusCode, header};
+use axum::body::Body;
+use axum::http::{Method, Request, StatusCode, header};
 use serde_json::{Value, json};
 
 use crate::bench::{Answer, Bench, json_request};
@@ -191,7 +192,7 @@ async fn change_if(bench: &Bench, path: &str, tag: &str, body: Value) -> Answer 
 }
 
 #[tokio::test]
-async fn who_changes_what_another_has_changed_is_told() {
+async fn a_change_of_an_outdated_revision_is_refused() {
     let bench = Bench::new().await;
     let id =
         bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [0.01, 0.02]}}})).await;
@@ -271,4 +272,20 @@ async fn a_sweep_is_deleted_when_that_is_meant() {
     assert_eq!(last["deleted"]["results"], 1, "{last}");
     let time = |name: &str| last[name].as_str().unwrap().parse::<jiff::Timestamp>().unwrap();
     assert!(time("ended") >= time("started"), "{last}");
+}
+
+#[tokio::test]
+async fn a_list_is_unchanged_until_one_of_its_sweeps_changes() {
+    let bench = Bench::new().await;
+    let id = bench.submit(json!({"preset": "paper-200m", "owner": "ann"})).await;
+    let tag = bench.get("/v1/sweeps?owner=ann").await.headers[header::ETAG].clone();
+    let again = async || {
+        let request = Request::get("/v1/sweeps?owner=ann").header(header::IF_NONE_MATCH, &tag);
+        bench.send(request.body(Body::empty()).unwrap()).await.status
+    };
+    assert_eq!(again().await, StatusCode::NOT_MODIFIED);
+    bench.submit(json!({"preset": "paper-200m", "owner": "bob"})).await;
+    assert_eq!(again().await, StatusCode::NOT_MODIFIED);
+    bench.succeed().await;
+    assert_eq!(again().await, StatusCode::OK, "a point of {id} has ended");
 }

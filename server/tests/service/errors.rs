@@ -96,7 +96,7 @@ async fn a_page_of_another_site_cannot_submit() {
 }
 
 #[tokio::test]
-async fn a_failure_of_the_store_tells_the_client_nothing_of_it() {
+async fn a_failure_of_the_store_is_not_disclosed_to_the_client() {
     let bench = Bench::new().await;
     bench.store.close().await;
     let problem = bench.get("/v1/sweeps").await.problem(500, "internal");
@@ -166,7 +166,7 @@ async fn overlong_and_encoded_requests_are_refused_with_problems() {
 }
 
 #[tokio::test]
-async fn malformed_bodies_are_told_of_without_the_names_of_types() {
+async fn problems_of_malformed_bodies_name_no_types() {
     let bench = Bench::new().await;
     for (body, pointer, words) in [
         (
@@ -216,7 +216,7 @@ async fn pages_for_people_are_kept_to_themselves() {
 }
 
 #[tokio::test]
-async fn who_refuses_unencoded_answers_gets_encoded_ones_or_is_refused_before_anything_is_done() {
+async fn requests_that_exclude_identity_get_gzip_or_are_refused_before_any_work() {
     let bench = Bench::new().await;
     let ask = |method: &str, path: &str, accepted: &str| {
         let request = Request::builder().method(method).uri(path).header(header::ACCEPT_ENCODING, accepted);

@@ -47,7 +47,7 @@ async fn stream(bench: &Bench, id: &str, last_seen: Option<u64>) -> Vec<(String,
 }
 
 #[tokio::test]
-async fn a_stream_tells_every_change_and_ends_with_the_sweep() {
+async fn a_stream_reports_every_change_and_ends_with_the_sweep() {
     let bench = Bench::new().await;
     let id = bench.submit(three_points()).await;
     let work = async {
@@ -92,7 +92,7 @@ async fn a_stream_tells_every_change_and_ends_with_the_sweep() {
 }
 
 #[tokio::test]
-async fn a_batch_larger_than_a_page_is_told_whole() {
+async fn a_batch_larger_than_a_page_is_reported_whole() {
     let bench = Bench::new().await;
     let values: Vec<f64> = (0..700).map(|k| 0.01 + 1e-5 * f64::from(k)).collect();
     let id = bench.submit(json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": values}}})).await;
@@ -139,4 +139,19 @@ async fn twenty_open_streams_do_not_hold_the_service_up() {
         let mut rest = Vec::new();
         timeout(SOON, connection.read_to_end(&mut rest)).await.expect("the stream ends").unwrap();
     }
+}
+
+#[tokio::test]
+async fn a_thousand_streams_are_open_at_most() {
+    let bench = Bench::new().await;
+    let path = format!("/v1/sweeps/{}/events", bench.submit(three_points()).await);
+    let mut open = Vec::new();
+    for _ in 0..1000 {
+        let answer = bench.open(&path).await;
+        assert_eq!(answer.status(), StatusCode::OK);
+        open.push(answer);
+    }
+    bench.get(&path).await.problem(503, "unavailable");
+    open.pop();
+    assert_eq!(bench.open(&path).await.status(), StatusCode::OK);
 }

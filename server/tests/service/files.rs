@@ -66,7 +66,7 @@ async fn a_file_is_served_whole_and_in_ranges() {
 
 /// RFC 9110 section 12.5.3: `identity;q=0` excludes answers without an encoding, and a part of a file has none.
 #[tokio::test]
-async fn who_refuses_unencoded_answers_gets_no_part_of_a_file() {
+async fn requests_that_exclude_identity_get_no_part_of_a_file() {
     let (bench, path) = finished().await;
     let link = format!("{path}/points/1/artifacts/history");
     let encoded = ("accept-encoding", "gzip, identity;q=0");
@@ -85,7 +85,7 @@ async fn who_refuses_unencoded_answers_gets_no_part_of_a_file() {
 }
 
 #[tokio::test]
-async fn who_has_a_file_does_not_get_it_again() {
+async fn a_client_with_a_current_copy_of_a_file_does_not_get_it_again() {
     let (bench, path) = finished().await;
     let link = format!("{path}/points/1/artifacts/history");
     let named = bench.get(&format!("{link}.parquet")).await;

@@ -2,7 +2,6 @@
 
 #![expect(clippy::unwrap_used, reason = "in a test a failure is a panic")]
 
-mod all_events;
 mod bench;
 mod connections;
 mod control;

@@ -454,7 +454,7 @@ async fn the_plan_of_a_point_is_that_of_its_scenario() {
 }
 
 #[tokio::test]
-async fn the_modes_of_a_point_fill_the_band_that_is_asked_for() {
+async fn the_modes_of_a_point_fill_the_requested_band() {
     let (bench, path) = finished().await;
     let of_band = async |to: f64| {
         let found = bench.get(&format!("{path}/points/1/modes?to_hz={to}")).await.json();

@@ -81,7 +81,7 @@ async fn snapshots_are_served_whole_by_window_and_thinned_by_whole_snapshots() {
 }
 
 #[tokio::test]
-async fn what_cannot_be_had_of_snapshots_is_told() {
+async fn impossible_requests_for_snapshots_are_refused_with_reasons() {
     let (bench, path) = finished().await;
     let problem = bench.get(&format!("{path}/2/snapshots")).await.problem(404, "no-such-table");
     let detail = problem["detail"].as_str().unwrap();

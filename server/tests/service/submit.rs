@@ -76,7 +76,7 @@ async fn a_run_is_a_sweep_of_one_point() {
 }
 
 #[tokio::test]
-async fn a_dry_run_tells_the_points_and_stores_nothing() {
+async fn a_dry_run_returns_the_points_and_stores_nothing() {
     let bench = Bench::new().await;
     bench.submit(json!({"preset": "paper-200m"})).await;
     bench.succeed().await;

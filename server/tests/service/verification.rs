@@ -34,7 +34,7 @@ fn grid(verify: f64, accuracy: &Value) -> Value {
 }
 
 #[tokio::test]
-async fn a_bias_beyond_the_promise_is_told_by_sweep_table_picture_and_export() {
+async fn a_bias_beyond_the_promise_is_reported_by_sweep_table_picture_and_export() {
     let bench = Bench::new().await;
     let id = bench.submit(grid(2.0, &json!("standard"))).await;
     let path = format!("/v1/sweeps/{id}");
@@ -110,7 +110,7 @@ async fn a_bias_beyond_the_promise_is_told_by_sweep_table_picture_and_export() {
 }
 
 #[tokio::test]
-async fn a_method_that_promises_nothing_has_its_bias_told_without_a_warning() {
+async fn a_method_without_a_promise_has_a_bias_and_no_warning() {
     let bench = Bench::new().await;
     let id = bench.submit(grid(0.2, &json!({"integrator": "esdirk4", "step": 0.001}))).await;
     for _ in 0..7 {
@@ -130,7 +130,7 @@ async fn a_method_that_promises_nothing_has_its_bias_told_without_a_warning() {
 }
 
 #[tokio::test]
-async fn reference_runs_that_fail_are_told_and_retried_and_known_ones_are_not_run_again() {
+async fn failed_reference_runs_are_reported_and_retried_and_known_ones_are_not_run_again() {
     let bench = Bench::new().await;
     let id = bench.submit(grid(1.0, &json!("draft"))).await;
     let path = format!("/v1/sweeps/{id}");

@@ -181,27 +181,6 @@ export function follow(id, listeners, signal) {
   signal.addEventListener("abort", () => source.close(), { once: true });
 }
 
-/**
- * Follows all sweeps until the signal. The browser reconnects by itself and says which event it saw last.
- * @param {{sweep: (sweep: any) => void, deleted: (id: string) => void, opened: () => void, broken: () => void}} listeners `opened` of a
- *   stream that has begun, or goes on after an interruption
- * @param {AbortSignal} signal
- */
-export function followAll(listeners, signal) {
-  if (signal.aborted) return;
-  const source = new EventSource("/v1/events");
-  source.addEventListener("open", listeners.opened);
-  source.addEventListener("sweep", (event) => listeners.sweep(JSON.parse(event.data)));
-  source.addEventListener("deleted", (event) => listeners.deleted(JSON.parse(event.data).id));
-  source.addEventListener("error", () => {
-    listeners.broken();
-    if (source.readyState === EventSource.CLOSED) setTimeout(() => followAll(listeners, signal), REFUSED_MS);
-    // A stream that ends and a server that is gone look the same from here.
-    else get("/livez", {}, signal).catch(() => {});
-  });
-  signal.addEventListener("abort", () => source.close(), { once: true });
-}
-
 /** @param {any} sweep */
 export function isFinal(sweep) {
   return sweep.state === "completed" || sweep.state === "cancelled";

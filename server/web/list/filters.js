@@ -70,16 +70,6 @@ export class Filters {
     return { state, name, owner, tag };
   }
 
-  /** Whether a sweep passes, as the service decides it. @param {any} sweep */
-  passes(sweep) {
-    const { state, name, owner, tag } = this.values;
-    if ((state && sweep.state !== state) || (owner && sweep.owner !== owner)) return false;
-    return (
-      (!tag || (sweep.tags ?? []).includes(tag)) &&
-      (sweep.name ?? "").toLowerCase().includes(name.toLowerCase())
-    );
-  }
-
   /** Gives the search the focus. */
   focus() {
     this.#name.focus();

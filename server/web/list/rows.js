@@ -63,13 +63,17 @@ export class Rows {
     this.#body.insertBefore(entry.row, below);
   }
 
-  /** Draws a sweep anew, if it has a row. @param {any} sweep */
+  /** Redraws the row of a sweep if that has changed. @param {any} sweep */
   update(sweep) {
     const entry = this.#known.get(sweep.id);
     if (!entry) return;
+    const isChanged = JSON.stringify(sweep) !== JSON.stringify(entry.sweep);
     entry.sweep = sweep;
     entry.pace.note(sweep);
+    if (!isChanged) return;
+    const isFocused = entry.row.contains(document.activeElement);
     drawRow(entry);
+    if (isFocused) entry.row.querySelector("a")?.focus({ preventScroll: true });
   }
 
   /** Removes a sweep. @param {string} id @returns {boolean} whether it had a row */

@@ -6,27 +6,18 @@ import { fill, h } from "../ui/dom.js";
 import { when } from "../ui/progress.js";
 import { link } from "../ui/router.js";
 
-/** Least time between two looks at the queue, the workers and the failures while sweeps change. */
-const SERVICE_MS = 4000;
-
 export class Service {
   #signal;
   #queue = h("section", { class: "panel", "aria-label": "Workers and queue" });
   #failures = h("section", { class: "panel", "aria-label": "What failed lately" });
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  #waits;
-  /** Time of the last look. */
-  drawnAt = 0;
 
   /** @param {AbortSignal} signal of the view */
   constructor(signal) {
     this.#signal = signal;
     this.element = h("aside", { "aria-label": "Service" }, this.#queue, this.#failures);
-    signal.addEventListener("abort", () => clearTimeout(this.#waits));
   }
 
   async draw() {
-    this.drawnAt = Date.now();
     const [queue, { workers }, failed] = await Promise.all([
       get("/v1/queue", {}, this.#signal),
       get("/v1/workers", {}, this.#signal),
@@ -34,17 +25,6 @@ export class Service {
     ]);
     fill(this.#queue, ...servicePart(queue, workers));
     fill(this.#failures, ...failuresPart(failed.failures));
-  }
-
-  /** Draws once more, not too often. */
-  changed() {
-    this.#waits ??= setTimeout(
-      () => {
-        this.#waits = undefined;
-        if (!document.hidden) void this.draw().catch(() => {});
-      },
-      Math.max(0, this.drawnAt + SERVICE_MS - Date.now()),
-    );
   }
 }
 

@@ -1,6 +1,5 @@
 // The list of sweeps, with the queue, the workers and the latest failures next to it.
 
-import { followAll } from "../data/api.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { go, keep } from "../ui/router.js";
@@ -9,10 +8,8 @@ import { Filters } from "./filters.js";
 import { Service } from "./service.js";
 import { Sweeps } from "./sweeps.js";
 
-/** Interval of looks at the list while no stream reports changes. */
+/** Interval at which list and service are requested again. */
 const POLL_MS = 4000;
-/** Longest time between two looks at the list and at the service: the stream does not report the deletion of a sweep that existed for less than a second. */
-const QUIET_MS = 30_000;
 /** Rest of typing before the list is loaded. */
 const REST_MS = 250;
 
@@ -29,7 +26,7 @@ export async function show(main, route, signal) {
   );
   const filters = new Filters(route.query, filtered);
   const service = new Service(signal);
-  const sweeps = new Sweeps(filters, service, signal);
+  const sweeps = new Sweeps(filters, signal);
   const taken = snippets(() => listLines(filters.values));
   addEventListener("keydown", (event) => pressed(event, filters, sweeps.rows), { signal });
   fill(
@@ -68,33 +65,20 @@ export async function show(main, route, signal) {
   );
   await sweeps.load();
   main.addEventListener("shown", () => attend(service.draw(), signal), { once: true });
-  followChanges(sweeps, service, signal);
+  poll(sweeps, service, signal);
   return "Sweeps";
 }
 
-/** Follows all sweeps by a stream of events, and looks at the list while there is none. @param {Sweeps} sweeps @param {Service} service @param {AbortSignal} signal */
-function followChanges(sweeps, service, signal) {
-  let isStreaming = false;
-  const timer = setInterval(() => {
+/** Requests list and service again at intervals while the page is visible. @param {Sweeps} sweeps @param {Service} service @param {AbortSignal} signal */
+function poll(sweeps, service, signal) {
+  const refresh = () => {
     if (document.hidden) return;
-    const now = Date.now();
-    if (!isStreaming || now - sweeps.lookedAt >= QUIET_MS) void sweeps.look().catch(() => {});
-    if (!isStreaming || now - service.drawnAt >= QUIET_MS) service.changed();
-  }, POLL_MS);
+    void sweeps.refresh().catch(() => {});
+    void service.draw().catch(() => {});
+  };
+  const timer = setInterval(refresh, POLL_MS);
+  document.addEventListener("visibilitychange", refresh, { signal });
   signal.addEventListener("abort", () => clearInterval(timer));
-  followAll(
-    {
-      sweep: (sweep) => sweeps.hear(sweep),
-      deleted: (id) => sweeps.hearDeleted(id),
-      opened: () => {
-        isStreaming = true;
-        // Changes between the list and the stream, or while there was none, may have no event.
-        void sweeps.look().catch(() => {});
-      },
-      broken: () => (isStreaming = false),
-    },
-    signal,
-  );
 }
 
 /** Acts on a key, unless a reader types in a field. @param {KeyboardEvent} event @param {Filters} filters @param {import("./rows.js").Rows} rows */

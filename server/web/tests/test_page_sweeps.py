@@ -613,8 +613,6 @@ def test_the_list_is_asked_for_once_and_waits_for_nothing_beside_it(opened: Open
     held: list[Route] = []
     page.on("request", lambda request: asked.append(request.url))
     page.route("**/v1/workers", lambda route: held.append(route))
-    # When the stream of changes is there the list is asked for again.
-    page.route("**/v1/events*", lambda route: held.append(route))
     page.goto(url)
     expect(page.get_by_text("No sweep matches these filters")).to_be_visible()
     assert [url.partition("?")[2] for url in asked if "/v1/sweeps?" in url] == ["name=img&tag=%3Cb%3Ebold&limit=100"]
@@ -1133,36 +1131,6 @@ def test_a_difference_to_a_sweep_that_is_gone_offers_others(
     drawn(page, "difference of")
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 404" not in text]
-
-
-def test_a_list_that_is_older_than_what_the_stream_tells_is_not_shown(idle: str, opened: Opens) -> None:
-    with Client(idle) as client:
-        ended = client.submit("paper-200m", set=SHORT, name="ended")
-        page = opened("#/nowhere", address=idle)
-        asked: list[Route] = []
-        older: list[Any] = []
-
-        def hold(route: Route) -> None:
-            """Keeps back the second list, which follows the beginning of the stream."""
-            answer = route.fetch()
-            asked.append(route)
-            if len(asked) == 2:
-                older.extend(answer.json()["sweeps"])
-            else:
-                route.fulfill(response=answer)
-
-        page.route("**/v1/sweeps?*limit=100*", hold)
-        page.goto(page.url.replace("#/nowhere", "#/sweeps"))
-        rows = page.get_by_role("table", name="Sweeps").get_by_role("row")
-        until(page, lambda: len(older) == 1)
-        ended.cancel()
-        state = rows.filter(has_text="ended").locator(".state")
-        expect(state).to_have_text("cancelled")
-        another = {**older[0], "id": f"{older[0]['id'][:-12]}ffffffffffff", "name": "another one"}
-        asked[1].fulfill(json={"sweeps": [another, *older], "next": None})
-        expect(rows.filter(has_text="another one")).to_be_visible()
-        assert older[0]["state"] == "running"
-        expect(state).to_have_text("cancelled")
 
 
 def test_who_searches_goes_on_typing_where_the_selected_sweep_leaves_the_list(idle: str, opened: Opens) -> None:

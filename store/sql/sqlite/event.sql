@@ -14,19 +14,3 @@ ORDER BY seq LIMIT $3
 -- name: MAKE_DURABLE
 -- Nothing: what one process sees, a crash of another one does not undo.
 SELECT 1 WHERE false
-
--- name: SWEEPS
--- Some sweeps, as lists have them: without their requests.
--- $1 the sweeps, a JSON array.
--- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
--- are few.
-SELECT id, name, owner, '' AS request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
-       points, points_queued, points_running, points_done, points_failed, points_cancelled,
-       verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
-       verifications_cancelled,
-       CASE points_running + verifications_running WHEN 0 THEN 0.0 ELSE (
-           SELECT total(w.progress) FROM work w CROSS JOIN point p ON p.work_key = w.key
-           WHERE w.state = 'leased' AND p.sweep_id = sweep.id
-             AND (sweep.cancelled = 0 OR w.stage_of_cancelled = 'running')) END AS running_progress
-FROM sweep
-WHERE id IN (SELECT value FROM json_each($1)) AND hidden IS NULL

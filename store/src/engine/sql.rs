@@ -133,8 +133,7 @@ statements! {
         both: NOW;
     }
     event {
-        both: MARKS, SINCE;
-        each: LIST, MAKE_DURABLE, SWEEPS;
+        each: LIST, MAKE_DURABLE;
     }
     failure {
         each: LIST;
@@ -251,8 +250,6 @@ mod tests {
         ("check::REFERENCES", "pragma_foreign_key_check"),
         ("check::RESULTS", "result"),
         ("check::WITHOUT_RESULT", "work"),
-        ("event::MARKS", "sweep"),
-        ("event::SINCE", "sweep"),
         ("garbage::ARTIFACT_NAMES", "artifact"),
         ("garbage::BLOBS_IN_USE", "artifact"),
         ("garbage::BLOBS_IN_USE", "upload"),

@@ -1,10 +1,9 @@
-//! Events of the points of a sweep, in order, and changes among all sweeps.
+//! Events of the points of a sweep, in order.
 
 use crate::engine::query::query;
 use crate::engine::sql;
 use crate::error::Result;
 use crate::store::Store;
-use crate::sweep::record::SweepRecord;
 use crate::work::state::{WorkKey, WorkState, work_key};
 
 /// A change of a work item that a sweep has among its points.
@@ -22,17 +21,6 @@ pub struct Event {
     pub verifies: Vec<u32>,
     /// Time of the event \[ms since the epoch\].
     pub at: i64,
-}
-
-/// Progress of a sweep, which is read of all sweeps to find those that have changed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SweepMark {
-    /// The sweep.
-    pub id: String,
-    /// Raised with every change of it.
-    pub version: i64,
-    /// True if one of its points, or of the runs that verify them, is not final.
-    pub is_unfinished: bool,
 }
 
 impl Store {
@@ -56,36 +44,6 @@ impl Store {
                 Ok(Event { seq, state, work_key: work_key(&key)?, ordinals, verifies, at })
             })
             .collect()
-    }
-
-    /// Progress of every sweep.
-    ///
-    /// # Errors
-    /// The database fails.
-    pub async fn sweep_marks(&self) -> Result<Vec<SweepMark>> {
-        self.apply_left_transitions().await;
-        let rows: Vec<(String, i64, bool)> = query(sql::event::MARKS).rows(&self.database).await?;
-        let mark = |(id, version, is_unfinished)| SweepMark { id, version, is_unfinished };
-        Ok(rows.into_iter().map(mark).collect())
-    }
-
-    /// Identifiers of the sweeps that are unfinished, or of which a point has changed at the time `since` \[ms since the epoch\]
-    /// or later, the oldest first. What people change of a finished sweep has no time, and does not count.
-    ///
-    /// # Errors
-    /// The database fails.
-    pub async fn sweeps_since(&self, since: i64) -> Result<Vec<String>> {
-        self.apply_left_transitions().await;
-        query(sql::event::SINCE).bind(since).scalars(&self.database).await
-    }
-
-    /// Some sweeps without their requests, in any order; nothing of those that are not there.
-    ///
-    /// # Errors
-    /// The database fails.
-    pub async fn listed_sweeps(&self, ids: &[&str]) -> Result<Vec<SweepRecord>> {
-        let ids = serde_json::json!(ids).to_string();
-        query(sql::event::SWEEPS).bind(ids).records(&self.database, SweepRecord::read).await
     }
 }
 

@@ -17,7 +17,7 @@ pub struct SweepRecord {
     pub name: Option<String>,
     /// Owner, whose share of the workers it counts against.
     pub owner: String,
-    /// The request as JSON; empty if sweeps are read [without](Store::listed_sweeps) it.
+    /// The request as JSON.
     pub request_json: String,
     /// Higher goes first.
     pub priority: i64,

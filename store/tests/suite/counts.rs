@@ -1,6 +1,6 @@
 //! A sweep's counts, end and events follow its points through whatever happens to them.
 
-use drillsweep_store::{Addition, Claim, StateCounts, Store, SweepRecord, WorkState};
+use drillsweep_store::{Addition, Claim, StateCounts, Store, WorkState};
 
 use crate::bench::{
     Engine, LEASE_MS, addition, claim, claim_or_none, finish, key, scenario, states, submit, sweep,
@@ -151,36 +151,4 @@ pub(crate) async fn events_tell_the_history_in_the_order_of_versions<E: Engine>(
         store.events("other", 0, 100).await.unwrap().into_iter().map(|event| event.state).collect();
     assert_eq!(others, [WorkState::Leased, WorkState::Failed]);
     assert_eq!(sweep_record(&store, "s").await.finished, Some(events[5].at));
-}
-
-pub(crate) async fn marks_tell_what_has_changed_and_when_it_last_did<E: Engine>() {
-    const HOUR: i64 = 3_600_000;
-    let engine = E::new();
-    let store = engine.open().await;
-    submit(&store, &sweep("early", [1])).await;
-    assert!(finish(&store, &claim(&store, "w").await).await);
-    submit(&store, &sweep("open", [2, 3])).await;
-    let before = store.sweep_marks().await.unwrap();
-    let later = engine.after(HOUR).await;
-    submit(&later, &sweep("late", [1])).await;
-    assert!(finish(&later, &claim(&later, "w").await).await);
-    let mut after = later.sweep_marks().await.unwrap();
-    after.sort_by(|a, b| a.id.cmp(&b.id));
-    let marked: Vec<_> = after.iter().map(|mark| (mark.id.as_str(), mark.is_unfinished)).collect();
-    assert_eq!(marked, [("early", false), ("late", false), ("open", true)]);
-    let versions =
-        |id: &str| [&before, &after].map(|marks| marks.iter().find(|mark| mark.id == id).unwrap().version);
-    assert_eq!(versions("early")[0], versions("early")[1]);
-    assert!(versions("open")[0] < versions("open")[1], "a point of it has changed");
-
-    let now = later.now_ms().await.unwrap();
-    assert_eq!(later.sweeps_since(now - HOUR / 2).await.unwrap(), ["late", "open"]);
-    assert_eq!(later.sweeps_since(now - 2 * HOUR).await.unwrap(), ["early", "late", "open"]);
-    assert_eq!(later.sweeps_since(now + HOUR).await.unwrap(), ["open"]);
-    assert!(finish(&later, &claim(&later, "w").await).await);
-    assert_eq!(later.sweeps_since(now - HOUR / 2).await.unwrap(), ["late", "open"]);
-    assert_eq!(later.sweeps_since(now + HOUR).await.unwrap(), Vec::<String>::new());
-    let listed = later.listed_sweeps(&["open", "none"]).await.unwrap();
-    let whole = sweep_record(&later, "open").await;
-    assert_eq!(listed, [SweepRecord { request_json: String::new(), ..whole }]);
 }

@@ -53,7 +53,6 @@ macro_rules! conformance {
             counts {
                 counts_and_end_agree_with_the_points_after_every_step_of_a_random_history,
                 events_tell_the_history_in_the_order_of_versions,
-                marks_tell_what_has_changed_and_when_it_last_did,
             }
             failure {
                 what_was_given_up_is_listed_over_all_sweeps_the_latest_first,

@@ -195,14 +195,6 @@ class Client:
         for data in self.pages("/v1/failures", "failures", {"owner": owner, "class": kind}):
             yield Point(self, data)
 
-    def watch(self, *, owner: str | None = None, tag: str | None = None) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Events of all sweeps from now on, as they happen; of those of one owner, or with a tag. They do not end.
-
-        Pairs of a name and data: `sweep` with a sweep in its present state, which begins with those that are not final
-        and comes at most once a second of each, and `deleted` with the `id` of one that is gone.
-        """
-        return self.events("/v1/events", {"owner": owner, "tag": tag})
-
     def scenarios(self) -> dict[str, str]:
         """Names and descriptions of the preset scenarios."""
         entries = self.get_json("/v1/scenarios")["scenarios"]

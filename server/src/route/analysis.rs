@@ -1,17 +1,18 @@
-//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, as dry runs do, and take their turn
-//! with these.
+//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, and take places for expansions, as dry runs
+//! do.
 
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::scene::{self, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::analysis::{self, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
+use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Format, Tag};
+use crate::answer::format::Format;
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
@@ -26,8 +27,8 @@ pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
 
 /// Plan of a point's scenario
 ///
-/// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
-/// the equilibrium shows.
+/// As in a dry run: effects with their decisions and reasons, mesh, steps and processor times at each accuracy, and findings about the
+/// equilibrium.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -36,7 +37,7 @@ pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
         tag = "points",
         operation_id = "get_plan",
         params(PointPath, Conditional),
-        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is right"), Problems)
+        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is current"), Problems)
     )
 )]
 pub(crate) async fn plan(
@@ -52,12 +53,12 @@ pub(crate) async fn plan(
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let plan = move |_: &mut Work| Ok(scene::plan(&point.scenario, speed.as_deref())?);
+    let plan = move |_: &mut Work| Ok(analysis::plan(&point.scenario, speed.as_deref())?);
     let (plan, _memory): (Plan, _) = place.run(plan).await?;
     Ok(tag.on(Json(plan).into_response()))
 }
 
-/// Which modes are wanted.
+/// Query of the modes.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
 #[serde(deny_unknown_fields)]
@@ -78,10 +79,10 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     range.ok_or_else(|| serde::de::Error::custom(detail()))
 }
 
-/// The modes of vibration of a point about its equilibrium
+/// Modes of vibration of a point about its equilibrium
 ///
-/// Frequencies, growth, what moves most and where: of the equations of motion linearised about the equilibrium, its contacts closed and
-/// sliding. They say where lines of a spectrum may come from; the motion of a run, which lifts off and sticks, need not keep to them.
+/// Frequencies, growth, and the largest motion with its place, from the equations of motion linearised about the equilibrium, its contacts
+/// closed and sliding. They are candidates for spectral lines; a run, in which contacts lift off and stick, may deviate from them.
 #[cfg_attr(
     feature = "openapi",
     utoipa::path(
@@ -90,7 +91,7 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
         tag = "points",
         operation_id = "get_modes",
         params(PointPath, ModesQuery, Conditional),
-        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is right"), Problems)
+        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is current"), Problems)
     )
 )]
 pub(crate) async fn modes(
@@ -106,7 +107,7 @@ pub(crate) async fn modes(
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let modes = move |_: &mut Work| Ok(scene::modes_up_to(&point.scenario, to_hz)?);
+    let modes = move |_: &mut Work| Ok(analysis::modes_up_to(&point.scenario, to_hz)?);
     let (modes, _memory): (Modes, _) = place.run(modes).await?;
     Ok(tag.on(Json(modes).into_response()))
 }

@@ -20,9 +20,9 @@ use serde_json::{Value, json};
 use tokio::sync::watch;
 use tracing::Instrument as _;
 
-use crate::artifact::EncodedArtifact;
 use crate::calibration::calibrate;
 use crate::compute::{Computation, compute_from, simulated_time_total};
+use crate::encode::EncodedArtifact;
 use crate::error::ComputeError;
 use crate::lease::{Heartbeat, StopReason, Verdict, Watched};
 use crate::memory::Memory;

@@ -1,4 +1,4 @@
-//! The tables that workers stored, and what views read of them.
+//! Stored tables of results: recordings and their parts that views read.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -29,14 +29,14 @@ async fn stored_of(store: &Store, key: &WorkKey, name: &str) -> Result<Stored> {
     Stored::new(store, key, find(store, key, name).await?)
 }
 
-/// One table of a point's result where there is such a table.
+/// One table of a point's result, if the result has it.
 pub(crate) async fn stored_if_any(store: &Store, sweep: &str, n: u32, name: &str) -> Result<Option<Stored>> {
     let key = result_key(store, sweep, n).await?;
     let artifact = store.artifacts(&key).await?.into_iter().find(|artifact| artifact.name == name);
     artifact.map(|artifact| Stored::new(store, &key, artifact)).transpose()
 }
 
-/// Where a table of a result is, or was until it expired.
+/// Finds a table of a result, expired or not.
 pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Artifact> {
     let mut artifacts = store.artifacts(key).await?;
     if let Some(index) = artifacts.iter().position(|artifact| artifact.name == name) {
@@ -46,7 +46,7 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     let detail = match names.as_slice() {
         [] => format!("the run has no table {name}: its `outputs` keep the summary only"),
         names if name == tables::SNAPSHOTS.name => format!(
-            "the run has no table {name}: its scenario asks for none (`recording.snapshots`); it has {}",
+            "the run has no table {name}: its scenario requests none (`recording.snapshots`); it has {}",
             names.join(", ")
         ),
         names => format!("the run has no table {name}; it has {}", names.join(", ")),
@@ -54,7 +54,7 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
     Err(Error::new(ProblemKind::NoSuchTable, detail))
 }
 
-/// The key of a point that has a result, even while it is being recomputed.
+/// Key of a point that has a result, even while it is being recomputed.
 pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
     let Some(point) = store.point(sweep, n.into()).await? else {
         return Err(records::no_such_point(store, sweep, n).await?);
@@ -72,23 +72,23 @@ pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<Wor
     Err(ProblemDetails { state: Some(state), ..ProblemDetails::new(ProblemKind::NoResult, detail) }.into())
 }
 
-/// The recorded histories of a run, and where their nodes are.
+/// Recorded histories of a run, with the depths of their nodes.
 pub(crate) struct Recording {
     pub(crate) history: Stored,
     pub(crate) statics: Stored,
 }
 
-/// Full spectra that were kept in place of histories, and where their nodes are.
+/// Full spectra that were kept in place of histories, with the depths of their nodes.
 pub(crate) struct KeptSpectra {
     spectra: Stored,
     statics: Stored,
 }
 
-/// Where the full spectra of a run come from.
+/// Source of the full spectra of a run.
 pub(crate) enum SpectrumSource {
-    /// Histories: any window.
+    /// Histories, for any window.
     Recording(Recording),
-    /// The spectra themselves.
+    /// Stored spectra.
     Kept(KeptSpectra),
 }
 
@@ -119,7 +119,7 @@ pub(crate) struct NodeMotion {
 }
 
 impl SpectrumSource {
-    /// Source at a point that has a result: its histories, or if it kept none its spectra.
+    /// Source of a point with a result: its histories, or its spectra if it kept none.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
         let key = result_key(store, sweep, n).await?;
         let artifacts = store.artifacts(&key).await?;
@@ -131,7 +131,7 @@ impl SpectrumSource {
         Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
     }
 
-    /// The names of all contents that a spectrum depends on.
+    /// Names of all blobs that a spectrum depends on.
     pub(crate) fn blobs(&self) -> [BlobId; 2] {
         match self {
             SpectrumSource::Recording(recording) => recording.blobs(),
@@ -139,11 +139,11 @@ impl SpectrumSource {
         }
     }
 
-    /// Bytes of memory that a spectrum takes.
+    /// Memory of a spectrum \[bytes\].
     pub(crate) async fn memory(&self) -> Result<u64> {
-        /// Of a sample: its time, u and v, the bins, and frequencies and amplitudes with what of them is shown.
+        /// Bytes of a sample: time, u and v, bins, frequencies and amplitudes, twice for the part that is shown.
         const OF_SAMPLE: u64 = 136;
-        /// Of a line of any spectrum: its node, window, frequency and amplitude.
+        /// Bytes of a spectral line: node, window, frequency and amplitude.
         const OF_LINE: u64 = 64;
         Ok(match self {
             SpectrumSource::Recording(Recording { history, .. }) => {
@@ -157,7 +157,7 @@ impl SpectrumSource {
 }
 
 impl KeptSpectra {
-    /// The spectrum of one node over one of the windows, for a weighting of the samples.
+    /// Spectrum of a node over a window, with a weighting of the samples.
     pub(crate) fn spectrum_of(
         &self,
         choice: Choice,
@@ -208,13 +208,13 @@ impl KeptSpectra {
 }
 
 impl NodeSpectrum {
-    /// A view of this spectrum with the node that it is of.
+    /// Adds the node of this spectrum to a view.
     pub(crate) fn label(&self, table: Table) -> Table {
         of_node(table, self.node, self.measured_depth)
     }
 }
 
-/// Columns that are read of a node's motion: time, u and v.
+/// Columns of a node's motion: time, u and v.
 const OF_MOTION: u64 = 3;
 
 impl Recording {
@@ -229,22 +229,22 @@ impl Recording {
         Ok(Recording { history, statics })
     }
 
-    /// The names of all contents that an orbit depends on.
+    /// Names of all blobs that an orbit depends on.
     pub(crate) fn blobs(&self) -> [BlobId; 2] {
         [self.history.blob(), self.statics.blob()]
     }
 
-    /// Bytes of memory that an orbit takes.
+    /// Memory of an orbit \[bytes\].
     pub(crate) async fn memory_of_orbit(&self) -> Result<u64> {
-        /// Of a sample: its time, u and v as they are read, and again with the radius as they are served.
+        /// Bytes of a sample: time, u and v as read, and again with the radius as served.
         const OF_SAMPLE: u64 = 64;
         Ok(self.history.memory_of(OF_MOTION).await? + self.history.rows() * OF_SAMPLE)
     }
 
-    /// The columns of one node, out of the `layout` of the history, with the node that they are of.
+    /// Columns of one node in the `layout` of the history, with the node.
     pub(crate) fn layout_of(&self, choice: Choice, mut layout: Table) -> Result<Table> {
         let nodes = match choice {
-            // Nearest in depth is meant of the motion.
+            // `nearest` refers to the nodes with a motion.
             Choice::Nearest(_) => self.nodes(&layout)?,
             Choice::Node(_) | Choice::At(_) => self.nodes_with_columns(&layout)?,
         };
@@ -260,8 +260,8 @@ impl Recording {
         Ok(of_node(layout, node, measured_depth))
     }
 
-    /// The samples of a half-open window \[from, to) \[s\] of the history; an absent end is open. A window that begins before what is kept,
-    /// or lies outside of it, is refused.
+    /// Samples of a half-open window \[from, to) \[s\] of the history; an absent end is open. A window that begins before the history, or
+    /// lies outside it, is refused.
     pub(crate) fn samples(
         &self,
         history: &StoredTable<StoredFile>,
@@ -275,7 +275,7 @@ impl Recording {
         let times = take(&mut times, TIME.name)?;
         let rows = window::samples(&times, from, to);
         let [first, .., last] = times[..] else { return Ok(Samples { rows, cut_at: None }) };
-        // Ends are rounded as people write them, to a millisecond at most.
+        // Users round the ends of windows, to a millisecond at most.
         const ROUNDED: f64 = 1e-3;
         let outside =
             [from.filter(|from| *from < first - ROUNDED || *from > last), to.filter(|to| *to <= first)];
@@ -315,9 +315,9 @@ impl Recording {
         Ok(history.read(columns, rows).map_err(|error| self.history.problem(error))?.widened())
     }
 
-    /// How the hole stands about a node.
+    /// Geometry of the hole around a node.
     pub(crate) fn hole_at(&self, node: u32) -> Result<Hole> {
-        /// Below this part of a hole's length gained in depth the low side is worth the name: 0.1 degrees.
+        /// Cosine of the inclination from which the hole has a low side: 0.1 degrees.
         const VERTICAL: f64 = 0.999_998_5;
         let wanted = [&NODE, &MEASURED_DEPTH, &TRUE_VERTICAL_DEPTH, &CLEARANCE, &LOW_SIDE_ANGLE];
         let statics = self.statics.read(Some(&wanted.map(|quantity| quantity.name)))?;
@@ -341,12 +341,12 @@ impl Recording {
         })
     }
 
-    /// The recorded nodes, by the columns of the history.
+    /// Recorded nodes, from the columns of the history.
     pub(crate) fn nodes(&self, layout: &Table) -> Result<Vec<Recorded>> {
         nodes_among(&self.statics, node::recorded(layout.columns.keys().map(String::as_str)))
     }
 
-    /// Number and measured depth \[m\] of the lowest node of the string; none of a string without nodes.
+    /// Number and measured depth \[m\] of the lowest node of the string.
     pub(crate) fn lowest_node(&self) -> Result<Option<(u32, f64)>> {
         let statics = self.statics.read(Some(&[NODE.name, MEASURED_DEPTH.name]))?;
         let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
@@ -358,12 +358,12 @@ impl Recording {
         Ok(node.zip(depths.last().copied()))
     }
 
-    /// All nodes that the history has columns of.
+    /// Nodes with columns in the history.
     fn nodes_with_columns(&self, layout: &Table) -> Result<Vec<Recorded>> {
         nodes_among(&self.statics, node::with_columns(layout.columns.keys().map(String::as_str)))
     }
 
-    /// Where the nodes lie that the history has columns of.
+    /// Depths of the nodes with columns in the history.
     pub(crate) fn places(&self, layout: &Table) -> Result<Vec<Place>> {
         let place = |recorded: Recorded| {
             let Recorded { node, measured_depth, .. } = recorded;
@@ -373,8 +373,7 @@ impl Recording {
     }
 }
 
-/// Where nodes of a point lie, as far as its equilibrium tells; none where that is not kept, or not any more. Read by a thread that may
-/// wait.
+/// Places of nodes from the equilibrium of a point. Blocks.
 pub(crate) fn depths(statics: &Stored, nodes: &[u32]) -> Result<Vec<Place>> {
     let place = |Recorded { node, measured_depth, .. }| Place { node, measured_depth, low_side: None };
     Ok(nodes_among(statics, nodes.iter().copied())?.into_iter().map(place).collect())
@@ -388,12 +387,12 @@ fn take(table: &mut Table, name: &str) -> Result<Vec<f64>> {
     }
 }
 
-/// A view with the node that it is of.
+/// Adds a node to a view.
 fn of_node(table: Table, node: u32, measured_depth: f64) -> Table {
     table.attribute(NODE.name, node).attribute(MEASURED_DEPTH.name, measured_depth)
 }
 
-/// The nodes of these numbers, from the table of the statics, which has all of the mesh.
+/// Nodes by their numbers, from the table of the equilibrium, which has all nodes of the mesh.
 fn nodes_among(statics: &Stored, recorded: impl IntoIterator<Item = u32>) -> Result<Vec<Recorded>> {
     let statics = statics.read(Some(&[NODE.name, MEASURED_DEPTH.name]))?;
     let (Some(Column::Integer(nodes)), Some(Column::Number(depths))) =
@@ -414,13 +413,13 @@ impl NodeMotion {
         Motion { time: &self.time, u: &self.u, v: &self.v }
     }
 
-    /// A view of this motion with its node, and the end of the history if the window is cut there.
+    /// Adds to a view the node of this motion, and the end of the history if the window is cut there.
     pub(crate) fn label(&self, table: Table) -> Table {
         mark_cut(of_node(table, self.node, self.measured_depth), self.cut_at)
     }
 }
 
-/// A view with the end of the history \[s\] at which its window is cut.
+/// Adds to a view the end of the history \[s\] at which its window is cut.
 pub(crate) fn mark_cut(table: Table, cut_at: Option<f64>) -> Table {
     match cut_at {
         Some(end) => table.attribute("window_cut_at", end),
@@ -428,7 +427,7 @@ pub(crate) fn mark_cut(table: Table, cut_at: Option<f64>) -> Table {
     }
 }
 
-/// The title of a picture, with the end of the history \[s\] at which its window is cut.
+/// Title of a picture, with the end of the history \[s\] at which its window is cut.
 pub(crate) fn title_of_cut(title: &str, cut_at: Option<f64>) -> String {
     match cut_at {
         Some(end) => format!("{title}; to the end of the history at {end} s"),

@@ -1,0 +1,111 @@
+//! Addition of points to a sweep.
+
+use axum::Extension;
+use axum::extract::State;
+use drillsweep_api::{AppendRequest, LIMITS, PHYSICS_VERSION, ProblemKind, Sweep, expand_added, sample};
+use drillsweep_store::{Addition, AppendOutcome, NewVerification};
+
+use crate::answer::error::{Error, Result};
+use crate::answer::extract::{self, Path};
+use crate::answer::json::Json;
+use crate::answer::records;
+use crate::app::App;
+use crate::app::expansions::Work;
+use crate::guard::caller::Caller;
+use crate::guard::quota;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::Problems;
+use crate::route::sweeps::expand::{expand_body, make_room};
+use crate::route::sweeps::load;
+
+/// Add points to a sweep
+///
+/// Points of the sweep's scenario with other values of its parameters, in any design, numbered after its last point. Points that the sweep
+/// has already are skipped, so that a finer grid can be requested as a whole, and repeating a request changes nothing. Added points are
+/// verified until the whole sweep has its share `verify`.
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        post,
+        path = "/v1/sweeps/{id}/points",
+        tag = "sweeps",
+        operation_id = "append_points",
+        params(("id" = String, Path, description = "Identifier of the sweep")),
+        request_body = AppendRequest,
+        responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
+    )
+)]
+pub(crate) async fn append(
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    Path(id): Path<String>,
+    body: extract::Body,
+) -> Result<Json<Sweep>> {
+    let sweep = load(&app, &id).await?;
+    let Some(original) = sweep.request else {
+        return Err(Error::internal("a sweep was read without its request"));
+    };
+    let verify = original.verify;
+    let expanded = expand_body(&app, &caller, &body, move |added: AppendRequest, work, memory| {
+        let request_json = records::write(&added)?;
+        let request = added.of(&original)?;
+        if let Err(needed) = make_room(work, memory, &request) {
+            return Ok(Err(needed));
+        }
+        let expansion = expand_added(&request, &original, &|| work.check())?;
+        let points = records::new_points(&expansion)?;
+        Ok(Ok((request_json, expansion, points)))
+    });
+    let ((request_json, expansion, points), _memory) = expanded.await?;
+    let (expansion, verification) = match verify {
+        None => (expansion, NewVerification::default()),
+        Some(verify) => {
+            let lacking = app.store.lacking_points(&id, &points).await?;
+            let verified = sweep.verification.as_ref().map_or(0, |verification| verification.counts.total);
+            let total = sweep.counts.total as usize + lacking.len();
+            let place = app.expansions.enter(caller.budget(), 0).await?;
+            let verify = move |work: &mut Work| {
+                let sample = sample(verify, total, verified as usize, lacking.len());
+                // Ordinals of the expansion count from 1.
+                let sample: Vec<usize> =
+                    sample.into_iter().map(|index| lacking[index] as usize - 1).collect();
+                let references = expansion.references(&sample, &|| work.check())?;
+                let verification = records::new_verification(&references)?;
+                Ok((expansion, verification))
+            };
+            place.run(verify).await?.0
+        }
+    };
+    quota::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
+    let base_json = records::write(&expansion.base)?;
+    let addition = Addition {
+        base_json: &base_json,
+        physics_version: PHYSICS_VERSION.into(),
+        points: &points,
+        verification: &verification,
+        request_json: &request_json,
+    };
+    let most = LIMITS.points_per_sweep as u64;
+    match app.store.append_points(&id, &addition, most).await? {
+        AppendOutcome::Added(_) => {}
+        AppendOutcome::NoSuchSweep => return Err(records::no_such_sweep(&id)),
+        AppendOutcome::Cancelled => {
+            return Err(Error::new(
+                ProblemKind::Conflict,
+                format!("sweep {id} is cancelled; retry it first"),
+            ));
+        }
+        AppendOutcome::OtherNumbers(version) => {
+            let detail = format!(
+                "the points of sweep {id} are of physics version {version}, and this service computes version \
+                 {PHYSICS_VERSION}: points of both in one sweep would not compare; submit a new one"
+            );
+            return Err(Error::new(ProblemKind::Conflict, detail));
+        }
+        AppendOutcome::TooMany(total) => {
+            let detail = format!("the sweep would have {total} points; a sweep has at most {most}");
+            return Err(Error::new(ProblemKind::Conflict, detail));
+        }
+    }
+    Ok(Json(Sweep { warnings: expansion.warnings, ..load(&app, &id).await? }))
+}

@@ -1,0 +1,192 @@
+//! Table of a sweep, as data or picture.
+
+use ::drillsweep_chart as chart;
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::ColumnList;
+use drillsweep_api::view::points::PointsTable;
+use drillsweep_store::WorkState;
+use drillsweep_table::quantity::{Name, tables};
+use indexmap::IndexSet;
+use serde::Deserialize;
+use tokio::runtime::Handle;
+
+use crate::answer::error::Result;
+use crate::answer::etag::Tag;
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::json::Json;
+use crate::answer::stored::Stored;
+use crate::answer::{recordings, records};
+use crate::app::App;
+#[cfg(feature = "openapi")]
+use crate::openapi::answers::{Conditional, PictureResponse, Problems};
+use crate::route::verification::{Verified, memory_of_points};
+
+/// Query of the table of a sweep.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SweepTableQuery {
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
+    #[cfg_attr(feature = "openapi", param(inline))]
+    format: Option<PictureFormat>,
+    /// Only these columns, separated by commas; of a picture, the columns that it shows.
+    #[serde(default, deserialize_with = "value::names")]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    fields: Option<Vec<String>>,
+    /// For a map: placement of the values of its parameters; absent means `even`.
+    #[cfg_attr(feature = "openapi", param(inline))]
+    spacing: Option<MapSpacing>,
+    /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas:
+    /// `mud.density:1200,operation.weight_on_bit:-50000`. A map spans the first two of the others; further ones are fixed at their first
+    /// value, which the picture states.
+    #[serde(default, deserialize_with = "value::assignments")]
+    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    slice: Option<Vec<(String, f64)>>,
+}
+
+/// Placement of the values of a parameter on a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MapSpacing {
+    /// Equal distances, regardless of the values.
+    #[default]
+    Even,
+    /// Distances in proportion to the values.
+    ToScale,
+}
+
+impl From<MapSpacing> for chart::Spacing {
+    fn from(spacing: MapSpacing) -> Self {
+        match spacing {
+            MapSpacing::Even => chart::Spacing::Even,
+            MapSpacing::ToScale => chart::Spacing::ToScale,
+        }
+    }
+}
+
+/// One row a point: its parameters and the scalars of its result
+///
+/// Points without a result have a row with empty fields, and `state` and `error` as the reason. Verified points have the bias of each
+/// statistic relative to the reference, such as `bias_orbit_radius_rms_49`; the attribute `warnings` reports biases beyond the promise of
+/// the accuracy. A picture shows the columns in `fields` over the parameters that vary: lines over one, a map of the first column over two,
+/// with diamonds at verified points; over more, a slice. Categorical columns, such as `state` and `stable`, have a colour for each value. A
+/// column of a node is shown with its depth, if that is the same in all of the sweep.
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/table",
+        tag = "sweeps",
+        operation_id = "get_sweep_table",
+        params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
+        responses(PictureResponse, Problems)
+    )
+)]
+pub(crate) async fn table(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(SweepTableQuery { format, fields, spacing, slice }): Query<SweepTableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(format, &headers)?;
+    let spacing = spacing.unwrap_or_default();
+    let slice = slice.unwrap_or_default();
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    // Every change of a point or a reference run raises the version.
+    let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, spacing, &slice));
+    let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
+    let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let verified = Verified::load(&app.store, &id).await?;
+    let nodes = match format.is_picture() {
+        true => nodes_of(fields.as_deref().unwrap_or_default()),
+        false => Vec::new(),
+    };
+    let statics = match nodes.is_empty() {
+        true => None,
+        false => statics_of_first(&app, &id).await?,
+    };
+    let (runtime, store) = (Handle::current(), app.store.clone());
+    app.answer(format, key.as_str(), memory, move || {
+        // A picture needs more than the requested columns.
+        let table = match &fields {
+            Some(fields) if !format.is_picture() => PointsTable::keeping(fields.iter().map(String::as_str)),
+            _ => PointsTable::default(),
+        };
+        let points = verified.points(table, &store, &id, &runtime)?;
+        let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
+        if let Some(statics) = statics
+            && !parameters.iter().any(|name| moves_nodes(name))
+        {
+            // Without depths the picture is still useful.
+            view.places = recordings::depths(&statics, &nodes).unwrap_or_default();
+        }
+        let mut table = points.finish();
+        let findings = &verified.findings;
+        if !findings.warnings.is_empty() {
+            table = table.attribute("warnings", findings.warnings.clone());
+        }
+        let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
+        Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), None, |table| {
+            chart::sweep(table, &parameters, fields, findings, title, &view)
+        })
+    })
+    .await
+}
+
+/// Nodes of columns with a node number.
+fn nodes_of(fields: &[String]) -> Vec<u32> {
+    let node = |name: &String| u32::try_from(Name::parse(name)?.place?.node()?).ok();
+    fields.iter().filter_map(node).collect()
+}
+
+/// Equilibrium of the first point that has a result, if it kept one.
+async fn statics_of_first(app: &App, id: &str) -> Result<Option<Stored>> {
+    let first = app.store.points(id, &[WorkState::Done], 0, 1).await?;
+    let ordinal = first.first().and_then(|point| u32::try_from(point.ordinal).ok());
+    match ordinal {
+        Some(n) => recordings::stored_if_any(&app.store, id, n, tables::STATICS.name).await,
+        None => Ok(None),
+    }
+}
+
+/// True if a parameter may move the nodes of the mesh, which follows from the string and its wall.
+fn moves_nodes(parameter: &str) -> bool {
+    let of_what = parameter.split(['.', '[']).next();
+    of_what.is_some_and(|of_what| ["string", "mesh", "contact"].contains(&of_what))
+}
+
+/// Columns of the table of a sweep, without values
+///
+/// Columns in order, with kinds and units, of the present states of the points. `GET /v1/quantities` defines the names.
+#[cfg_attr(
+    feature = "openapi",
+    utoipa::path(
+        get,
+        path = "/v1/sweeps/{id}/table/columns",
+        tag = "sweeps",
+        operation_id = "list_sweep_table_columns",
+        params(("id" = String, Path, description = "Identifier of the sweep")),
+        responses((status = 200, description = "The columns", body = ColumnList), Problems)
+    )
+)]
+pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> Result<Json<ColumnList>> {
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    if let Some(columns) = app.columns.get(&id, sweep.version) {
+        return Ok(Json(columns));
+    }
+    let place = app.view(memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?).await?;
+    let verified = Verified::load(&app.store, &id).await?;
+    let runtime = Handle::current();
+    place
+        .run(move || {
+            let points = verified.points(PointsTable::keeping([]), &app.store, &id, &runtime)?;
+            let columns = ColumnList::of(&points.finish());
+            app.columns.put(id, sweep.version, columns.clone());
+            Ok(Json(columns))
+        })
+        .await
+}

@@ -93,7 +93,7 @@ fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_sim::modes::Mode;
+    use drillsweep_sim::solve::modes::Mode;
     use serde_json::json;
 
     use super::*;

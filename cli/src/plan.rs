@@ -146,7 +146,7 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::ScenarioRequest;
-    use drillsweep_sim::study::plan::MachineSpeed;
+    use drillsweep_study::plan::MachineSpeed;
     use serde_json::Value;
 
     use super::*;

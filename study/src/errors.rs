@@ -205,7 +205,7 @@ impl TimeError {
             |(node, orbit): &(usize, &OrbitSummary)| distance(*node) > PARTED * orbit.orbit_radius_rms;
         if let Some((node, orbit)) = run.orbits.iter().enumerate().find(parted) {
             return unknown(format!(
-                "runs that start {DISTURBANCE:e} m apart differ by {:.1e} m at {} m, where the orbit size is {:.1e} m: the errors of the \
+                "runs that start {DISTURBANCE:e} m apart differ by {:.1e} m at {} m, with an orbit size of {:.1e} m: the errors of the \
                  steps are amplified in the same way",
                 distance(node),
                 orbit.measured_depth,
@@ -224,12 +224,12 @@ impl TimeError {
         };
         if statistics > LARGEST_ESTIMATE || !statistics.is_finite() {
             return unknown(format!(
-                "the errors of the steps, amplified by {amplification:.0} like any disturbance of this scene, reach half of the orbit \
+                "the errors of the steps, amplified by {amplification:.0} like any disturbance of this scenario, reach half of the orbit \
                  size or more; a smaller tolerance reduces them"
             ));
         }
         if others.is_empty() && twin.is_none() {
-            let condition = "the scene amplifies disturbances no more than most scenes do; one run cannot tell, ensemble=2 measures it";
+            let condition = "the scenario amplifies disturbances no more than most do; one run cannot measure it, ensemble=2 does";
             return TimeError::Conditional { statistics, condition: condition.into() };
         }
         TimeError::Estimated { statistics, amplification }
@@ -269,7 +269,7 @@ impl SamplingError {
             }
             MotionRegime::NotSettled => return unknown("the motion has not settled".into()),
             MotionRegime::Fixed => {
-                return unknown("the window is fixed: whether the motion has settled was not judged".into());
+                return unknown("the window is fixed: the motion was not tested for having settled".into());
             }
         };
         match estimated.filter(|error| error.is_finite()) {
@@ -368,7 +368,7 @@ impl fmt::Display for TimeError {
         match self {
             TimeError::Estimated { statistics, amplification } => write!(
                 formatter,
-                "error of statistics by steps: {:.1e}, estimated for a scene that amplifies disturbances by {amplification:.0}",
+                "error of statistics by steps: {:.1e}, estimated for a scenario that amplifies disturbances by {amplification:.0}",
                 statistics
             ),
             TimeError::Conditional { statistics, condition } => {

@@ -69,7 +69,7 @@ impl MeshEstimate {
         let touches = equilibrium.normal_force.iter().any(|&force| force > 0.0);
         if touches && model.scenario.contact.law == WallLaw::PerNode {
             return unknown(
-                "contact stiffness is a node's, so it need not converge; contact.law = \"per_length\" makes it the length's",
+                "contact stiffness is per node, so the equilibrium need not converge with the mesh; contact.law = \"per_length\" makes it per length",
             );
         }
         if model.elements.len() > MOST_ELEMENTS {

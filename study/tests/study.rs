@@ -149,7 +149,7 @@ fn members_of_smooth_motion_have_hardly_any_spread_so_that_every_bias_counts() {
     assert_eq!(report.orbit_window, TimeWindow { from: 1.6, to: 2.4 });
     assert_eq!(report.spectrum_window, Some(TimeWindow { from: 2.0, to: 2.4 }));
     assert_eq!((report.members, report.scenario_duration), (3, 4.0));
-    assert!(report.warnings.iter().any(|warning| warning.contains("what comes later is not compared")));
+    assert!(report.warnings.iter().any(|warning| warning.contains("later motion is not compared")));
     let errors = report.methods[0].errors.as_ref().unwrap();
     let orbit = errors.orbit_size.as_ref().unwrap();
     assert_eq!(orbit.significant, Some(true), "{orbit:?}");

@@ -55,8 +55,7 @@ pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
             && friction_drives_torsion
             && scenario.damping.stiffness_proportional == 0.0,
         "accuracy.step",
-        "at so small a step the integrator no longer damps the torsional modes of single elements, some kHz, which the falling \
-         friction curve drives; give damping.stiffness_proportional a value such as 1e-6 s",
+        "at so small a step the integrator no longer damps the torsional modes of single elements, some kHz, which velocity-weakening friction excites; give damping.stiffness_proportional a value such as 1e-6 s",
     );
 
     let explicit = stepping.integrator == Integrator::Rk4;
@@ -74,8 +73,7 @@ pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
             |radius| of_alpha && (0.0..=LARGEST_SPECTRAL_RADIUS).contains(&radius),
             if of_alpha {
                 format!(
-                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps the error that the contact sweeps \
-                     leave, and results are wrong without any indication"
+                    "must be 0 to {LARGEST_SPECTRAL_RADIUS}: nearer to 1 nothing damps the error that contact iterations leave, and results are wrong without any indication"
                 )
             } else {
                 "is for generalized_alpha only".to_owned()

@@ -31,7 +31,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
     report.warn(
         scenario.cost_study.is_some() || !active_effects(scenario).transient,
         PATH,
-        "there is no run in time of which snapshots could be kept",
+        "snapshots need a run in time",
     );
     report.positive(rate_hz, RATE);
     if let Some(window) = &window {

@@ -143,8 +143,7 @@ fn mesh_targets(report: &mut Report, scenario: &Scenario) {
     report.warn(
         scenario.mesh.is_auto() && scenario.contact.law == WallLaw::PerNode,
         "mesh",
-        "contact stiffness is a node's, so the element lengths of \"auto\" decide how stiff the wall is; with contact.law = \
-         \"per_length\" it is the same for every mesh",
+        "contact stiffness is per node, so the stiffness of the wall depends on the element lengths of \"auto\"; with contact.law = \"per_length\" it is the same for every mesh",
     );
     report.warn(
         scenario.mesh.is_auto()
@@ -256,7 +255,7 @@ fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
                 gauge.clearance,
                 format!("{path}.clearance"),
                 |clearance| clearance <= left,
-                format!("must be at most {left} m, what the body leaves of the hole there"),
+                format!("must be at most {left} m, the clearance of the body there"),
             );
         }
         let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.measured_depth) == node);

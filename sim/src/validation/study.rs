@@ -78,7 +78,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         study.effects || fixed || !study.presets.is_empty() || !study.mesh_factors.is_empty(),
         "cost_study.methods",
         "no step",
-        "must name at least one method with one step where presets and mesh_factors are empty",
+        "must name at least one method with one step if presets and mesh_factors are empty",
     );
     let lines = study.most_lines();
     let runs = lines.saturating_mul(study.members as usize);

@@ -37,7 +37,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
             || scenario.cost_study.is_none() && active_effects(scenario).transient,
         "statics.start",
         "both",
-        "must be one: there are no runs whose statistics could be compared (none in time, or a cost study in their place)",
+        "must be one: without runs in time, or with a cost study in their place, no statistics can be compared",
     );
     if let Some(study) = &scenario.cost_study {
         study::check(report, scenario, study);
@@ -59,7 +59,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
             !recording.nodes.is_empty() || !active_effects(scenario).transient,
             "recording.orbit_window",
             "settled",
-            "needs at least one of recording.nodes, whose motion shows whether it has settled",
+            "needs at least one of recording.nodes, since their motion shows that it has settled",
         ),
         None => {}
     }
@@ -145,7 +145,7 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
         "recording.rate_hz",
         rate,
         format!(
-            "must be at most {}: {duration} s may have {MOST_SAMPLES} samples, which orbits and spectra are computed from in memory",
+            "must be at most {}: {duration} s may have {MOST_SAMPLES} samples, since orbits and spectra are computed in memory",
             in_three_digits(MOST_SAMPLES / duration)
         ),
     );

@@ -158,7 +158,7 @@ pub fn report(
     let mut warnings = Vec::new();
     if base.duration < scenario.duration {
         warnings.push(format!(
-            "the runs last {} s, the scenario {} s: what comes later is not compared",
+            "the runs last {} s, the scenario {} s: later motion is not compared",
             base.duration, scenario.duration
         ));
     }

@@ -89,7 +89,7 @@ pub struct CostReport {
     /// settled values of the two methods on a finer mesh.
     pub settles: bool,
     /// Duration of the scenario itself \[s\]. Where the runs are shorter, the windows are not those that a summary has, and
-    /// what comes later is not compared.
+    /// later motion is not compared.
     pub scenario_duration: f64,
     /// Window of orbit size, radius, contact force and torsional speed \[s\]; of runs that settle that of the reference's first method.
     pub orbit_window: TimeWindow,

@@ -21,8 +21,7 @@ const HIGHEST_ORDER: f64 = 4.0;
 const LOWEST_ORDER: f64 = 0.5;
 
 /// Why orbits need not converge where the wall's stiffness is a node's.
-pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are a node's, so a finer mesh meets a stiffer wall and need not \
-                                        converge; contact.law = \"per_length\" makes them the length's";
+pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are per node, so a finer mesh meets a stiffer wall and need not converge; contact.law = \"per_length\" makes them per length";
 
 /// Looks for the cheapest pair of the report's meshes and methods for a whole error of `wanted`; `base` is the scenario that was run.
 pub(super) fn total(report: &CostReport, base: &Scenario, wanted: f64) -> TotalCost {
@@ -148,7 +147,7 @@ fn doubt(limits: &[MeshLimit]) -> String {
         return String::new();
     }
     format!(
-        " (no order of convergence is seen at {} m: the mesh's part there is the distance from the finest mesh, and that of the two finest)",
+        " (no order of convergence at {} m: the mesh's part there is the difference from the finest mesh plus that of the two finest)",
         without.join(", ")
     )
 }

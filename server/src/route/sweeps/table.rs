@@ -7,7 +7,7 @@ use axum::response::Response;
 use drillsweep_api::ColumnList;
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_store::WorkState;
-use drillsweep_table::quantity::{Name, tables};
+use drillsweep_quantity::{Name, tables};
 use indexmap::IndexSet;
 use serde::Deserialize;
 use tokio::runtime::Handle;

@@ -34,7 +34,7 @@ pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
     let decide = |&effect: &Effect| {
         let switch = scenario.effects.switch(effect);
         let (is_active, reason) = match switch {
-            Switch::On => (true, "asked for".to_owned()),
+            Switch::On => (true, "requested".to_owned()),
             Switch::Off => (false, "switched off".to_owned()),
             Switch::Auto => {
                 let call = (term(effect).called_for)(&Scene { scenario, active: &active });
@@ -168,7 +168,7 @@ mod tests {
             (of(Effect::Contact).active, of(Effect::Contact).reason.as_str()),
             (false, "switched off")
         );
-        assert_eq!((of(Effect::Friction).active, of(Effect::Friction).reason.as_str()), (true, "asked for"));
+        assert_eq!((of(Effect::Friction).active, of(Effect::Friction).reason.as_str()), (true, "requested"));
         assert!(of(Effect::Gyroscopic).active);
         // Friction torque follows from what was decided of contact.
         assert_eq!(of(Effect::FrictionTorque).reason, "there is no contact");

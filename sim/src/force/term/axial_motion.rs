@@ -9,7 +9,7 @@ pub(crate) const TERM: Term = Term { moves: Some(W), ..Term::new(called_for) };
 
 fn called_for(scene: &Scene<'_>) -> Call {
     if scene.is_straight() {
-        no("nothing makes a straight string move along itself")
+        no("a straight string has no excitation of axial motion")
     } else {
         yes("the curved hole couples axial motion with bending")
     }

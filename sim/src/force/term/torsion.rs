@@ -11,6 +11,6 @@ fn called_for(scene: &Scene<'_>) -> Call {
     match (scene.active.friction_torque, scene.is_straight()) {
         (true, _) => yes("friction twists the string"),
         (false, false) => yes("the curved hole couples twist with bending"),
-        (false, true) => no("nothing makes the twist of a straight string move"),
+        (false, true) => no("a straight string without friction torque has no excitation of torsion"),
     }
 }

@@ -14,8 +14,8 @@ fn called_for(scene: &Scene<'_>) -> Call {
         || recording.snapshots.is_some()
         || scene.scenario.cost_study.is_some();
     if in_time {
-        yes("histories are asked for")
+        yes("histories are requested")
     } else {
-        no("no node is recorded and no window or snapshot asked for: statics and hydraulics are all")
+        no("no node is recorded and no window or snapshot requested: only statics and hydraulics")
     }
 }

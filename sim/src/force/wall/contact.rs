@@ -17,7 +17,7 @@ pub(crate) const WORK: Account =
     Account::beside("contact_work", |booked| booked.by_force(NORMAL_WORK) + booked.by_force(FRICTION_WORK));
 
 fn called_for(_: &Scene<'_>) -> Call {
-    yes("the string may reach the wall; while it does not, only the distance is looked at")
+    yes("the string may reach the wall; until then only the distance is computed")
 }
 
 /// Power \[W\] of a normal force \[N\] on a node's motion, along the radius at the distance \[m\] from the axis that it was evaluated

@@ -67,10 +67,10 @@ pub enum Completeness {
 impl fmt::Display for Completeness {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Counted => write!(formatter, "all eigenvalues there are, by their count"),
-            Self::Missing(count) => write!(formatter, "{count} eigenvalues that were counted were not found"),
-            Self::Excess(count) => write!(formatter, "{count} of them are beyond those that were counted"),
-            Self::NotCounted => write!(formatter, "whether these are all could not be counted"),
+            Self::Counted => write!(formatter, "all eigenvalues, by their count"),
+            Self::Missing(count) => write!(formatter, "{count} of the counted eigenvalues were not found"),
+            Self::Excess(count) => write!(formatter, "{count} more eigenvalues were found than counted"),
+            Self::NotCounted => write!(formatter, "completeness could not be determined by a count"),
         }
     }
 }

@@ -88,7 +88,7 @@ impl InstabilityKind {
             InstabilityKind::FlowDivergence => "divergence by the flow",
             InstabilityKind::FlowFlutter => "flutter by the flow",
             InstabilityKind::FrictionWhirl => "whirl by friction",
-            InstabilityKind::StickSlip => "stick-slip by falling friction",
+            InstabilityKind::StickSlip => "stick-slip by velocity-weakening friction",
             InstabilityKind::Other => "an instability",
         }
     }
@@ -106,7 +106,7 @@ impl fmt::Display for Stability {
             }
             None => write!(
                 formatter,
-                "no mode was found to grow about its equilibrium up to {:.0} Hz; {}; {BIT_NOT_JUDGED}",
+                "no growing mode about its equilibrium was found up to {:.0} Hz; {}; {BIT_NOT_JUDGED}",
                 self.complete_to_hz, self.completeness
             ),
             Some(unstable) => write!(formatter, "physically unstable: {unstable}"),
@@ -138,7 +138,7 @@ impl Stability {
         match &self.instability {
             Some(_) if self.explains_divergence_at(time) => self.to_string(),
             Some(unstable) => format!(
-                "numerical or unexplained: what grows fastest about the equilibrium ({unstable}) had grown by a factor of {:.2} by then",
+                "numerical or unexplained: the fastest growth about the equilibrium ({unstable}) had grown by a factor of {:.2} by then",
                 (unstable.growth_rate * time).exp()
             ),
             None => format!("numerical or unexplained: {self}"),
@@ -231,8 +231,7 @@ impl Stability {
     pub fn warning(&self) -> Option<String> {
         let unstable = self.instability?;
         Some(format!(
-            "the equilibrium is unstable: {} moves the string away from it, growing with {:.3} 1/s, most at {:.1} m; its contacts, forces \
-             and torque are not those that the string comes to, and how it leaves depends on the least disturbance",
+            "the equilibrium is unstable: {} moves the string away from it, growing with {:.3} 1/s, most at {:.1} m; the string does not settle at its contacts, forces and torque, and its path away depends on the smallest disturbance",
             unstable.kind.in_words(),
             unstable.growth_rate,
             unstable.measured_depth

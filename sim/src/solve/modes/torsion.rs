@@ -80,8 +80,7 @@ impl UndampedTorsion {
         }
         (highest > resolved_hz).then(|| {
             format!(
-                "torsional modes grow up to {highest:.0} Hz, and steps resolve vibrations up to {resolved_hz:.0} Hz: they decide which \
-                 torsion survives, and lateral motion depends on it"
+                "torsional modes grow up to {highest:.0} Hz, and steps resolve vibrations up to {resolved_hz:.0} Hz: torsion, and lateral motion with it, depends on the steps"
             )
         })
     }
@@ -108,9 +107,7 @@ impl fmt::Display for UndampedTorsion {
             (None, _) => write!(formatter, "all torsional modes decay; {BIT_NOT_JUDGED}"),
             (Some(highest), _) if self.up_to_the_mesh => write!(
                 formatter,
-                "torsional modes grow up to {highest:.0} Hz, where the mesh ends ({:.0} Hz): friction that falls with speed feeds them, and \
-                 damping.stiffness_proportional does not end it, so mesh and step decide which torsion survives, and lateral motion \
-                 depends on it",
+                "torsional modes grow up to {highest:.0} Hz, where the mesh ends ({:.0} Hz): velocity-weakening friction excites them, and damping.stiffness_proportional does not suppress it, so torsion, and lateral motion with it, depends on mesh and step",
                 self.mesh_hz
             ),
             (Some(highest), Some(count)) => write!(

@@ -128,7 +128,7 @@ impl fmt::Display for Settling {
                 )?;
             }
             (MotionRegime::Fixed, _) => {
-                write!(formatter, "fixed window: whether the motion has settled was not judged")?
+                write!(formatter, "fixed window: the motion was not tested for having settled")?
             }
         }
         if let Some(differ) = self.halves_differ {

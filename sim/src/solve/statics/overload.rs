@@ -49,9 +49,9 @@ impl fmt::Display for Overload {
         write!(
             formatter,
             "the string is physically unstable: {} eigenvalues of its stiffness are negative{}; {:.2} m at {:.1} m depth carry {:.1} kN of \
-             compression and {:.2} kN m of torque, {:.3} times what buckles them between pinned ends",
+             compression and {:.2} kN m of torque, {:.3} times their buckling load between pinned ends",
             self.negative_eigenvalues,
-            if self.held_by_wall { " even where the wall holds every node" } else { "" },
+            if self.held_by_wall { " even if the wall holds every node" } else { "" },
             self.length,
             self.measured_depth,
             self.compression / 1e3,

@@ -18,7 +18,7 @@ pub enum TransientError {
     },
     /// The contact is so stiff that no step is short enough.
     #[error(
-        "two contact sweeps need the step of {step:.3e} s cut into more than {most} parts at node {node}: its contact is too stiff for \
+        "two contact iterations need the step of {step:.3e} s cut into more than {most} parts at node {node}: its contact is too stiff for \
          its mass; an accuracy with a tolerance (draft, standard, reference) adapts its steps to it"
     )]
     ContactTooStiff {

@@ -225,6 +225,7 @@ mod tests {
     use drillsweep_scenario::{Gauge, Mesh, UnbalanceMass, preset};
 
     use super::*;
+    use crate::string::boundaries::SNAP_FRACTION;
 
     fn paper() -> Scenario {
         preset("paper-200m").unwrap()

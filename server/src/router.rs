@@ -15,7 +15,6 @@ use tokio::sync::watch;
 use crate::answer::error::Error;
 use crate::app::{App, Config};
 use crate::guard::middleware;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::{
     analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
@@ -105,16 +104,13 @@ fn for_people() -> Router<App> {
 }
 
 /// The OpenAPI document of the service
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/openapi.json",
-        tag = "service",
-        operation_id = "get_openapi",
-        security(()),
-        responses((status = 200, description = "The document", content_type = "application/json"), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/openapi.json",
+    tag = "service",
+    operation_id = "get_openapi",
+    security(()),
+    responses((status = 200, description = "The document", content_type = "application/json"), Problems)
 )]
 pub(crate) async fn show() -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/json")], OPENAPI_JSON.as_str())

@@ -20,8 +20,7 @@ use drillsweep_sim::solve::step::{longest_step, resolved_hz, step_count, torsion
 use drillsweep_sim::string::StringMesh;
 
 /// The plan of a scenario.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Plan {
     /// Every effect, whether it takes part and why.
     pub effects: Vec<EffectDecision>,
@@ -67,8 +66,7 @@ pub struct Plan {
 }
 
 /// Size and cost of one accuracy.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedAccuracy {
     /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
     pub name: String,
@@ -91,8 +89,7 @@ pub struct PlannedAccuracy {
 }
 
 /// Runs and cost of a cost study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedStudy {
     /// Runs of all methods, steps and meshes, by all members.
     pub runs: u64,
@@ -106,8 +103,7 @@ pub struct PlannedStudy {
 }
 
 /// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,

@@ -16,8 +16,7 @@ use crate::answer::etag::Tag;
 use crate::answer::stored::{Stored, StoredFile};
 
 /// Formats in which tables are served.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum TableFormat {
     /// An object of columns.
@@ -31,8 +30,7 @@ pub(crate) enum TableFormat {
 }
 
 /// Formats of tables that can also be drawn as pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PictureFormat {
     /// An object of columns.

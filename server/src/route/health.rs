@@ -9,7 +9,6 @@ use tokio::time::{Instant, timeout};
 use crate::answer::error::{Error, Result};
 use crate::answer::json::Json;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
 /// Time for which a result is kept, since each check writes to the disk, and anybody may request one.
@@ -19,16 +18,13 @@ const FRESH: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Check that the process answers
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/livez",
-        tag = "service",
-        operation_id = "is_alive",
-        security(()),
-        responses((status = 200, description = "It does", body = Health), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/livez",
+    tag = "service",
+    operation_id = "is_alive",
+    security(()),
+    responses((status = 200, description = "It does", body = Health), Problems)
 )]
 pub(crate) async fn alive() -> Json<Health> {
     Json(Health { status: "ok".to_owned() })
@@ -38,16 +34,13 @@ pub(crate) async fn alive() -> Json<Health> {
 ///
 /// A scratch point is queued, claimed and removed; a scratch blob is written, read and deleted. The service is not ready either if
 /// submissions wait and none has been expanded for 15 s.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/readyz",
-        tag = "service",
-        operation_id = "is_ready",
-        security(()),
-        responses((status = 200, description = "It can", body = Health), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/readyz",
+    tag = "service",
+    operation_id = "is_ready",
+    security(()),
+    responses((status = 200, description = "It can", body = Health), Problems)
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
     if app.expansions.is_stuck() {

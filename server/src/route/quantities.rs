@@ -4,11 +4,9 @@ use std::sync::LazyLock;
 
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-#[cfg(feature = "openapi")]
 use drillsweep_quantity::QuantityEntry;
 
 use crate::answer::error::{Error, Result};
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 
 /// Meaning of columns and fields, with their units
@@ -16,20 +14,17 @@ use crate::openapi::answers::{Conditional, Problems};
 /// Keys are names of columns without node (`u_49` is `u`), spectrum window (`line_amplitude_49_w1`) and prefixes of ensembles and
 /// references (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, except for frequencies), and paths of a scenario's
 /// fields without indices. Needs no token.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/quantities",
-        tag = "service",
-        operation_id = "list_quantities",
-        params(Conditional),
-        security(()),
-        responses(
-            (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
-            (status = 304, description = "The copy is current"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/quantities",
+    tag = "service",
+    operation_id = "list_quantities",
+    params(Conditional),
+    security(()),
+    responses(
+        (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
+        (status = 304, description = "The copy is current"),
+        Problems
     )
 )]
 pub(crate) async fn list() -> Result<Response> {

@@ -24,45 +24,44 @@ use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems, TableResponse};
 
 /// Path of a point.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Path)]
 pub(crate) struct PointPath {
     /// Identifier of the sweep.
     pub(crate) id: String,
     /// Number of the point in the sweep, from 1.
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     pub(crate) n: u32,
 }
 
 /// Query of a table.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TableQuery {
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     pub(crate) format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     pub(crate) fields: Option<Vec<String>>,
 }
 
 /// Query of a table that can be drawn as a picture.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PictureQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     pub(crate) format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     pub(crate) fields: Option<Vec<String>>,
 }
 
@@ -70,16 +69,13 @@ pub(crate) struct PictureQuery {
 ///
 /// Eccentricity, friction coefficient C_f, apparent viscosity, flow regime, pressures, tension and torque at
 /// the equilibrium, from the top down. A picture shows C_f, or the `fields`, over depth.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/profile",
-        tag = "points",
-        operation_id = "get_profile",
-        params(PointPath, PictureQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/profile",
+    tag = "points",
+    operation_id = "get_profile",
+    params(PointPath, PictureQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn profile(
     State(app): State<App>,
@@ -109,16 +105,13 @@ pub(crate) async fn profile(
 }
 
 /// Static equilibrium, node by node
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/statics",
-        tag = "points",
-        operation_id = "get_statics",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/statics",
+    tag = "points",
+    operation_id = "get_statics",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn statics(
     app: State<App>,
@@ -130,16 +123,13 @@ pub(crate) async fn statics(
 }
 
 /// Contacts of every node with the hole over the run
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/contacts",
-        tag = "points",
-        operation_id = "get_contacts",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/contacts",
+    tag = "points",
+    operation_id = "get_contacts",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn contacts(
     app: State<App>,
@@ -151,16 +141,13 @@ pub(crate) async fn contacts(
 }
 
 /// Energy ledger over the run
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/energy",
-        tag = "points",
-        operation_id = "get_energy",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/energy",
+    tag = "points",
+    operation_id = "get_energy",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn energy(
     app: State<App>,
@@ -172,16 +159,13 @@ pub(crate) async fn energy(
 }
 
 /// Motion over the whole of a run that ends once it has settled, at 20 Hz at most
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/course",
-        tag = "points",
-        operation_id = "get_course",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/course",
+    tag = "points",
+    operation_id = "get_course",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn course(
     app: State<App>,
@@ -251,13 +235,13 @@ pub(super) async fn whole_file(
 }
 
 /// Query of recorded histories.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HistoryQuery {
     /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -273,18 +257,18 @@ pub(crate) struct HistoryQuery {
     to: Option<f64>,
     /// Largest number of rows, which `decimation` chooses. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     max_points: Option<u32>,
     /// Choice of rows beyond `max_points`. `minmax` keeps at least two for each column except `time`.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     decimation: Decimation,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
 }
 
@@ -308,16 +292,13 @@ impl HistoryQuery {
 /// picture shows u and v; with torsion also rotation speed \[rpm\] and torque at the bit, from the history or else the snapshots, or, as
 /// its text then states, of the lowest recorded node. For a chosen node it shows the columns of that node, and with `fields` those alone.
 /// The legend gives depths and directions. A picture shows at most 2,000,000 values.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/history",
-        tag = "points",
-        operation_id = "get_history",
-        params(PointPath, HistoryQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/history",
+    tag = "points",
+    operation_id = "get_history",
+    params(PointPath, HistoryQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn history(
     State(app): State<App>,
@@ -471,13 +452,13 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
 }
 
 /// Query of an orbit.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OrbitQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -493,14 +474,14 @@ pub(crate) struct OrbitQuery {
     to: Option<f64>,
     /// Largest number of points, from 4: those with the extremes of u and v in each part of the window. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 4))]
+    #[param(minimum = 4)]
     max_points: Option<u32>,
     /// For a picture: true shows the motion alone, with the whole hole as an inset; absent means true if the motion is below a tenth of the
     /// hole.
     #[serde(default, deserialize_with = "value::choice")]
     zoom: Option<bool>,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
 }
 
@@ -508,16 +489,13 @@ pub(crate) struct OrbitQuery {
 ///
 /// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
 /// `samples`, the number of samples in the window.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/orbit",
-        tag = "points",
-        operation_id = "get_orbit",
-        params(PointPath, OrbitQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/orbit",
+    tag = "points",
+    operation_id = "get_orbit",
+    params(PointPath, OrbitQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn orbit(
     State(app): State<App>,
@@ -555,13 +533,13 @@ pub(crate) async fn orbit(
 }
 
 /// Query of a full spectrum.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrumQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -577,18 +555,18 @@ pub(crate) struct SpectrumQuery {
     to: Option<f64>,
     /// Weighting of the samples in the window.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     window: spectrum::Weighting,
     /// Frequencies from minus to plus this \[Hz\] are shown.
     #[serde(default = "default_range", deserialize_with = "range")]
-    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0))]
+    #[param(default = 20.0, exclusive_minimum = 0.0)]
     range_hz: f64,
     /// Largest number of listed peaks, the highest first.
     #[serde(default = "default_peaks", deserialize_with = "peaks")]
-    #[cfg_attr(feature = "openapi", param(default = 10))]
+    #[param(default = 10)]
     peaks: usize,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
 }
 
@@ -617,16 +595,13 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 /// amplitude interpolated between bins. Neither has lines outside the range. The attribute `resolved_hz` is the frequency up to which the
 /// run's steps resolve vibrations; peaks below it are `is_resolved`, and a picture shades the frequencies above. If a run kept only
 /// spectra, the window is one of its scenario.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/spectrum",
-        tag = "points",
-        operation_id = "get_spectrum",
-        params(PointPath, SpectrumQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/spectrum",
+    tag = "points",
+    operation_id = "get_spectrum",
+    params(PointPath, SpectrumQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn spectrum(
     State(app): State<App>,

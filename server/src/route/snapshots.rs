@@ -14,13 +14,12 @@ use crate::answer::format::{self, Answer, Format, TableFormat};
 use crate::answer::recordings;
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name, whole_file};
 
 /// Query of snapshots.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SnapshotsQuery {
     /// Start of the window \[s\], included.
@@ -31,18 +30,18 @@ pub(crate) struct SnapshotsQuery {
     to: Option<f64>,
     /// Only this node, 1 at the top; absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Largest number of snapshots; every k-th one is kept, with all its nodes. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     max_frames: Option<u32>,
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
 }
 
@@ -61,16 +60,13 @@ impl SnapshotsQuery {
 /// A row a node, from the top, snapshot after snapshot; kept if the scenario requests them (`recording.snapshots`). Motions that were not
 /// solved for have no columns. Attributes: `nodes`, rows of a snapshot (1 for one `node`); `snapshots`, their number in the window before
 /// thinning by `max_frames`; `first`, time of the first one \[s\]; `interval` between those returned \[s\].
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/snapshots",
-        tag = "points",
-        operation_id = "get_snapshots",
-        params(PointPath, SnapshotsQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/snapshots",
+    tag = "points",
+    operation_id = "get_snapshots",
+    params(PointPath, SnapshotsQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

@@ -8,8 +8,7 @@ use drillsweep_sim::solve::run::{MotionRegime, TransientError};
 use drillsweep_sim::solve::statics::StaticsError;
 
 /// Quantity of a run that a study compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Root mean square distance from the mean position, of each recorded node over the orbit window.
@@ -78,8 +77,7 @@ impl Quantity {
 }
 
 /// The outcome of a study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostReport {
     /// Name of the scenario.
     pub scenario: String,
@@ -151,8 +149,7 @@ impl CostReport {
 }
 
 /// How far the two methods of a reference agree in one quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Agreement {
     /// The quantity.
     pub quantity: Quantity,
@@ -170,8 +167,7 @@ pub struct Agreement {
 }
 
 /// How far the two methods of a reference agree at one node.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeAgreement {
     /// Measured depth of the node \[m\]; absent where the value is the whole string's.
     pub measured_depth: Option<f64>,
@@ -198,8 +194,7 @@ impl Agreement {
 }
 
 /// One line of a study against its reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostRow {
     /// `draft`, `standard` or `reference` for these accuracies, `A` and `B` for the two methods whose agreement makes the
     /// study's reference, and the integrator's name for all others.
@@ -240,8 +235,7 @@ pub struct CostRow {
 }
 
 /// Errors of a line against the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostErrors {
     /// Orbit size; absent where there is no reference for it at any node, as in all that follow.
     pub orbit_size: Option<StatisticError>,
@@ -283,8 +277,7 @@ impl CostErrors {
 }
 
 /// The error of a statistic at the worst recorded node, where bias and half the interval's width together are largest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct StatisticError {
     /// Mean of the members less the reference, relative to the reference.
     pub bias: f64,
@@ -308,8 +301,7 @@ impl StatisticError {
 }
 
 /// A statistic of one recorded node, or of the whole string, against the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeStatistic {
     /// Measured depth of the node \[m\]; absent where the statistic is the whole string's.
     pub measured_depth: Option<f64>,
@@ -334,8 +326,7 @@ impl NodeStatistic {
 }
 
 /// Lines of the members' mean spectra against those of the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct LineErrors {
     /// Largest distance of a line from the reference's \[Hz\], of those that are there; absent where none is.
     pub frequency_hz: Option<f64>,
@@ -351,8 +342,7 @@ pub struct LineErrors {
 }
 
 /// One of the reference's lines.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NamedLine {
     /// Measured depth of the node \[m\].
     pub measured_depth: f64,
@@ -367,8 +357,7 @@ pub struct NamedLine {
 }
 
 /// A line that the reference does not have.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SpuriousLine {
     /// Measured depth of the node \[m\].
     pub measured_depth: f64,
@@ -379,8 +368,7 @@ pub struct SpuriousLine {
 }
 
 /// The cheapest way to some accuracy of a quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Recommendation {
     /// The quantity.
     pub quantity: Quantity,
@@ -418,8 +406,7 @@ pub enum StudyError {
 }
 
 /// The cheapest mesh, method and tolerance for a whole error of orbit size.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct TotalCost {
     /// Wanted relative error of orbit size over the orbit window, mesh and time together.
     pub wanted: f64,
@@ -436,8 +423,7 @@ pub struct TotalCost {
 }
 
 /// Limit of the orbit size of one node as the mesh gets finer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshLimit {
     /// Measured depth of the node \[m\].
     pub measured_depth: Option<f64>,
@@ -449,8 +435,7 @@ pub struct MeshLimit {
 }
 
 /// Error of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshPart {
     /// Factor on the mesh's target element lengths.
     pub mesh_factor: f64,
@@ -464,8 +449,7 @@ pub struct MeshPart {
 }
 
 /// A mesh with a method, and what to expect of them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct TotalChoice {
     /// Factor on the mesh's target element lengths.
     pub mesh_factor: f64,
@@ -492,8 +476,7 @@ pub struct TotalChoice {
 }
 
 /// Obstacle to the wanted whole error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StoppedBy {
     /// Every mesh is off by more.

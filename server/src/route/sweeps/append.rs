@@ -13,7 +13,6 @@ use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
 use crate::guard::quota;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::expand::{expand_body, make_room};
 use crate::route::sweeps::load;
@@ -23,17 +22,14 @@ use crate::route::sweeps::load;
 /// Points of the sweep's scenario with other values of its parameters, in any design, numbered after its last point. Points that the sweep
 /// has already are skipped, so that a finer grid can be requested as a whole, and repeating a request changes nothing. Added points are
 /// verified until the whole sweep has its share `verify`.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/points",
-        tag = "sweeps",
-        operation_id = "append_points",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        request_body = AppendRequest,
-        responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/points",
+    tag = "sweeps",
+    operation_id = "append_points",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    request_body = AppendRequest,
+    responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
 )]
 pub(crate) async fn append(
     State(app): State<App>,

@@ -16,7 +16,6 @@ use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::load;
 
@@ -24,16 +23,13 @@ use crate::route::sweeps::load;
 ///
 /// Queued points and reference runs are cancelled at once, running ones within a heartbeat of their worker. Points that another sweep
 /// shares continue for that sweep. Cancelling again changes nothing.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/cancel",
-        tag = "sweeps",
-        operation_id = "cancel_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/cancel",
+    tag = "sweeps",
+    operation_id = "cancel_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     let (store, cancelled) = (app.store.clone(), id.clone());
@@ -42,16 +38,13 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
 }
 
 /// Retry the failed and cancelled points and reference runs of a sweep
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/retry",
-        tag = "sweeps",
-        operation_id = "retry_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/retry",
+    tag = "sweeps",
+    operation_id = "retry_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.retry_sweep(&id).await?;
@@ -62,16 +55,13 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
 ///
 /// Its queued points are not started any more, except for those that another sweep shares; running ones continue to their end. Pausing
 /// again changes nothing.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/pause",
-        tag = "sweeps",
-        operation_id = "pause_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/pause",
+    tag = "sweeps",
+    operation_id = "pause_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, true).await?;
@@ -79,16 +69,13 @@ pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Res
 }
 
 /// Resume a paused sweep
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/resume",
-        tag = "sweeps",
-        operation_id = "resume_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/resume",
+    tag = "sweeps",
+    operation_id = "resume_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, false).await?;
@@ -99,23 +86,20 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
 ///
 /// Absent fields remain. A new priority also applies to queued points. With `If-Match` a sweep that was changed meanwhile is not changed
 /// (412); progress of its points does not count.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        patch,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "change_sweep",
-        params(
-            ("id" = String, Path, description = "Identifier of the sweep"),
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
-        ),
-        request_body = SweepPatch,
-        responses(
-            (status = 200, description = "The sweep in its present state", body = Sweep,
-                headers(("ETag" = String, description = "As of a sweep that is read"))),
-            Problems
-        )
+#[utoipa::path(
+    patch,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "change_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
+    request_body = SweepPatch,
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "As of a sweep that is read"))),
+        Problems
     )
 )]
 pub(crate) async fn change(
@@ -159,8 +143,8 @@ fn already_past(expires: Timestamp, now: Timestamp) -> Error {
 }
 
 /// Query of a deletion.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DeleteQuery {
     /// True returns the extent of the deletion, and deletes nothing.
@@ -172,20 +156,17 @@ pub(crate) struct DeleteQuery {
 ///
 /// Its points, events and requests are deleted at once, results that no other sweep has, and their tables, with the next garbage
 /// collection. A sweep that is pinned, or has points that are not final, is not deleted (409).
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        delete,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "delete_sweep",
-        params(
-            ("id" = String, Path, description = "Identifier of the sweep"),
-            DeleteQuery,
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
-        ),
-        responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
-    )
+#[utoipa::path(
+    delete,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "delete_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        DeleteQuery,
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
+    responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
 )]
 pub(crate) async fn delete(
     State(app): State<App>,

@@ -10,26 +10,25 @@ use crate::answer::etag::Hashed;
 use crate::answer::extract::{self, Query, value};
 use crate::answer::records;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 use crate::route::waiting::note_waiting;
 
 /// Query of the list of sweeps.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ListQuery {
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
+    #[param(minimum = 1, maximum = 500)]
     limit: Option<u32>,
     /// `next` of the page before.
-    #[cfg_attr(feature = "openapi", param(min_length = 1))]
+    #[param(min_length = 1)]
     cursor: Option<String>,
     /// Only sweeps of this owner.
     owner: Option<String>,
     /// Only sweeps in this state.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     state: Option<SweepState>,
     /// Only sweeps with this text in their name, regardless of case.
     name: Option<String>,
@@ -42,19 +41,16 @@ pub(crate) struct ListQuery {
 /// List sweeps, newest first
 ///
 /// Repeat the `ETag` as `If-None-Match` to poll: the answer is 304 while no listed sweep has changed.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps",
-        tag = "sweeps",
-        operation_id = "list_sweeps",
-        params(ListQuery, Conditional),
-        responses(
-            (status = 200, description = "A page of sweeps", body = SweepList, headers(("ETag" = String))),
-            (status = 304, description = "The copy is current"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "list_sweeps",
+    params(ListQuery, Conditional),
+    responses(
+        (status = 200, description = "A page of sweeps", body = SweepList, headers(("ETag" = String))),
+        (status = 304, description = "The copy is current"),
+        Problems
     )
 )]
 pub(crate) async fn list(

@@ -13,28 +13,26 @@ use crate::answer::etag::Tagged;
 use crate::answer::extract::{Path, Query, value};
 use crate::app::App;
 use crate::guard::caller::Caller;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load, load_findings};
 
 /// Query of a sweep.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ShowQuery {
     /// Longest wait before the answer, at most 60 s: `30s`, `500ms`, or seconds as a number.
     #[serde(default, deserialize_with = "value::span")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "30s"))]
+    #[param(value_type = Option<String>, example = "30s")]
     wait: Option<Duration>,
     /// Condition that ends the wait early.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     until: Until,
 }
 
 /// Condition that a long poll waits for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Until {
     /// Any change of state, counts or progress, or of the worker that queued points wait for.
@@ -48,19 +46,16 @@ pub(crate) enum Until {
 ///
 /// With `wait` the answer is held back until the sweep changes, so that a script needs no polling loop. A sweep whose points are all final
 /// is returned at once.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "get_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
-        responses(
-            (status = 200, description = "The sweep in its present state", body = Sweep,
-                headers(("ETag" = String, description = "Of this answer; `If-Match` takes it as the sweep's revision"))),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "get_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "Of this answer; `If-Match` takes it as the sweep's revision"))),
+        Problems
     )
 )]
 pub(crate) async fn show(

@@ -23,7 +23,6 @@ use crate::app::expansions::Work;
 use crate::guard::audit::Owner;
 use crate::guard::caller::Caller;
 use crate::guard::quota;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::status::WORKER_SILENCE;
 use crate::route::sweeps::expand::{expand_body, make_room};
@@ -32,8 +31,8 @@ use crate::route::sweeps::load;
 const IDEMPOTENCY_KEY: &str = "idempotency-key";
 
 /// Query of a submission.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SubmitQuery {
     /// True returns the points and the plan of the request, and stores nothing.
@@ -41,13 +40,12 @@ pub(crate) struct SubmitQuery {
     dry_run: bool,
     /// Policy for points that were computed before, for any owner.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     cache: Cache,
 }
 
 /// Policy for points that were computed before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Cache {
     /// Known results are used; other points are computed.
@@ -64,25 +62,22 @@ pub(crate) enum Cache {
 ///
 /// The points are the scenario at every combination of the axes' values, the first axis varying slowest. All errors of the request and its
 /// points are reported together.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps",
-        tag = "sweeps",
-        operation_id = "create_sweep",
-        request_body = SweepRequest,
-        params(
-            SubmitQuery,
-            ("Idempotency-Key" = Option<String>, Header, description = "A key of the client's choice, such as a UUID. \
-                The same request sent again with the same key is answered with the sweep that it made the first time."),
-        ),
-        responses(
-            (status = 201, description = "The sweep is stored and queued", body = Sweep,
-                headers(("Location" = String, description = "The sweep"))),
-            (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
-            Problems,
-        )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "create_sweep",
+    request_body = SweepRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "A key of the client's choice, such as a UUID. \
+            The same request sent again with the same key is answered with the sweep that it made the first time."),
+    ),
+    responses(
+        (status = 201, description = "The sweep is stored and queued", body = Sweep,
+            headers(("Location" = String, description = "The sweep"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
     )
 )]
 pub(crate) async fn create(
@@ -98,24 +93,21 @@ pub(crate) async fn create(
 /// Submit a single run
 ///
 /// A sweep of one point: the answer is that sweep, the result is at its point 1.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/runs",
-        tag = "sweeps",
-        operation_id = "create_run",
-        request_body = RunRequest,
-        params(
-            SubmitQuery,
-            ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
-        ),
-        responses(
-            (status = 201, description = "The run is stored and queued", body = Sweep,
-                headers(("Location" = String, description = "The sweep of one point"))),
-            (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
-            Problems,
-        )
+#[utoipa::path(
+    post,
+    path = "/v1/runs",
+    tag = "sweeps",
+    operation_id = "create_run",
+    request_body = RunRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
+    ),
+    responses(
+        (status = 201, description = "The run is stored and queued", body = Sweep,
+            headers(("Location" = String, description = "The sweep of one point"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
     )
 )]
 pub(crate) async fn create_run(

@@ -21,36 +21,34 @@ use crate::answer::json::Json;
 use crate::answer::stored::Stored;
 use crate::answer::{recordings, records};
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
 use crate::route::verification::{Verified, memory_of_points};
 
 /// Query of the table of a sweep.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SweepTableQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
     /// For a map: placement of the values of its parameters; absent means `even`.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     spacing: Option<MapSpacing>,
     /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas:
     /// `mud.density:1200,operation.weight_on_bit:-50000`. A map spans the first two of the others; further ones are fixed at their first
     /// value, which the picture states.
     #[serde(default, deserialize_with = "value::assignments")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     slice: Option<Vec<(String, f64)>>,
 }
 
 /// Placement of the values of a parameter on a map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum MapSpacing {
     /// Equal distances, regardless of the values.
@@ -76,16 +74,13 @@ impl From<MapSpacing> for chart::Spacing {
 /// the accuracy. A picture shows the columns in `fields` over the parameters that vary: lines over one, a map of the first column over two,
 /// with diamonds at verified points; over more, a slice. Categorical columns, such as `state` and `stable`, have a colour for each value. A
 /// column of a node is shown with its depth, if that is the same in all of the sweep.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/table",
-        tag = "sweeps",
-        operation_id = "get_sweep_table",
-        params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table",
+    tag = "sweeps",
+    operation_id = "get_sweep_table",
+    params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn table(
     State(app): State<App>,
@@ -163,16 +158,13 @@ fn moves_nodes(parameter: &str) -> bool {
 /// Columns of the table of a sweep, without values
 ///
 /// Columns in order, with kinds and units, of the present states of the points. `GET /v1/quantities` defines the names.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/table/columns",
-        tag = "sweeps",
-        operation_id = "list_sweep_table_columns",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The columns", body = ColumnList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table/columns",
+    tag = "sweeps",
+    operation_id = "list_sweep_table_columns",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The columns", body = ColumnList), Problems)
 )]
 pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> Result<Json<ColumnList>> {
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };

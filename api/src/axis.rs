@@ -36,8 +36,7 @@ pub enum Axis {
 }
 
 /// Spacing of the values between the ends of a range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Equal differences: `from + (to - from) i / (count - 1)`.
@@ -181,8 +180,7 @@ impl TryFrom<AxisFields> for Axis {
 
 /// The name of a swept parameter: `flow_rate` \[m3/s\], `mud_density` \[kg/m3\], or the path of a numeric field of the
 /// scenario.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(transparent)]
 pub struct AxisName(String);
 
@@ -207,7 +205,6 @@ impl From<&str> for AxisName {
     }
 }
 
-#[cfg(feature = "openapi")]
 mod schema {
     use utoipa::openapi::schema::{OneOf, Schema};
     use utoipa::openapi::{Ref, RefOr};

@@ -11,8 +11,7 @@ use crate::problem::FieldProblem;
 const PLANNED_POINTS: usize = 16;
 
 /// Preview of a request, without storing anything.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DryRun {
     /// Number of points.
     pub total: u64,
@@ -44,8 +43,7 @@ pub struct DryRun {
 }
 
 /// The reference runs that would verify some points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PlannedVerification {
     /// Number of reference runs.
     pub total: u64,
@@ -56,8 +54,7 @@ pub struct PlannedVerification {
 }
 
 /// A point that a request would become.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PlannedPoint {
     /// Number of the point, from 1, the first axis varying slowest.
     pub ordinal: u32,

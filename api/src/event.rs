@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::point::PointState;
 
 /// The data of an event `point`: a result that points of the sweep share, or that verifies some, has come to a new state.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointEvent {
     /// The points, by their numbers in the sweep; none where it is only the reference run of some.
     pub ordinals: Vec<u32>,
@@ -21,8 +20,7 @@ pub struct PointEvent {
 }
 
 /// The data of an event `deleted`: a sweep is no longer there.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct DeletedSweep {
     /// The sweep.
     pub id: String,

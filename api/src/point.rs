@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 /// The state of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PointState {
     /// Waiting for a worker.
@@ -43,8 +42,7 @@ impl std::fmt::Display for PointState {
 }
 
 /// One row of a sweep's list of points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointRow {
     /// Number of the point in its sweep, from 1, the first axis varying slowest.
     pub ordinal: u32,
@@ -64,8 +62,7 @@ pub struct PointRow {
 }
 
 /// A page of points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointList {
     /// The points, by ordinal.
     pub points: Vec<PointRow>,
@@ -75,8 +72,7 @@ pub struct PointList {
 }
 
 /// A page of points, with the fields of each that were asked for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SelectedPointList {
     /// The points, by ordinal.
     pub points: Vec<Map<String, Value>>,
@@ -92,8 +88,7 @@ impl PointRow {
 }
 
 /// A failed point, in the list over all sweeps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Failure {
     /// Identifier of its sweep.
     pub sweep: String,
@@ -110,8 +105,7 @@ pub struct Failure {
 }
 
 /// A page of failed points, the latest first.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct FailureList {
     /// The points.
     pub failures: Vec<Failure>,
@@ -121,16 +115,14 @@ pub struct FailureList {
 }
 
 /// The files of a point's result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ArtifactList {
     /// One entry a file, by name.
     pub artifacts: Vec<ArtifactEntry>,
 }
 
 /// One file of a point's result.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ArtifactEntry {
     /// Its name within the result.
     pub name: String,
@@ -150,8 +142,7 @@ pub struct ArtifactEntry {
 }
 
 /// Contents of an archive of a sweep, and what it lacks: `manifest.json` in it.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ExportManifest {
     /// Number of files of points in the archive.
     pub files: u64,
@@ -160,11 +151,10 @@ pub struct ExportManifest {
 }
 
 /// A file of a point that cannot be had.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MissingFile {
     /// Number of the point in the sweep, from 1.
-    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
+    #[schema(minimum = 1)]
     pub point: u32,
     /// Name of the table.
     pub table: String,
@@ -173,8 +163,7 @@ pub struct MissingFile {
 }
 
 /// Everything about one point but its tables.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointDetail {
     /// The point as in the list.
     #[serde(flatten)]
@@ -196,8 +185,7 @@ pub struct PointDetail {
 }
 
 /// Why a point has failed; workers store this very form.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointError {
     /// The class of failure.
     pub class: FailureClass,
@@ -222,8 +210,7 @@ impl PointError {
 }
 
 /// Class of the failure that ended a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FailureClass {
     /// The simulation itself: it diverged, or there is no equilibrium. Would happen again.
@@ -255,8 +242,7 @@ impl FailureClass {
 }
 
 /// Where to read more about a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointLinks {
     /// The point itself.
     #[serde(rename = "self")]

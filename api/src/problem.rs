@@ -181,12 +181,11 @@ impl ProblemKind {
 }
 
 /// A problem document (RFC 9457), served as `application/problem+json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ProblemDetails {
     /// Stable URI of the kind of problem, for programs to compare.
     #[serde(rename = "type")]
-    #[cfg_attr(feature = "openapi", schema(example = "urn:drillsweep:problem:invalid-request"))]
+    #[schema(example = "urn:drillsweep:problem:invalid-request")]
     pub type_uri: String,
     /// The kind of problem in words.
     pub title: String,
@@ -206,12 +205,11 @@ pub struct ProblemDetails {
 }
 
 /// One thing that is wrong with a request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct FieldProblem {
     /// JSON Pointer (RFC 6901) into the request's body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(example = "/axes/flow_rate/values/2"))]
+    #[schema(example = "/axes/flow_rate/values/2")]
     pub pointer: Option<String>,
     /// Name of the path, query or header parameter.
     #[serde(default, skip_serializing_if = "Option::is_none")]

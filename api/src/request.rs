@@ -17,34 +17,30 @@ use crate::problem::{FieldProblem, ProblemDetails};
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///
 /// Exactly one of `preset` and `scenario` is given. `set` is applied first, then the axes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(
-            min_length = 1,
-            max_length = 200,
-            pattern = r"^\P{Cc}*$",
-            example = "flow rate against density"
-        )
+    #[schema(
+        min_length = 1,
+        max_length = 200,
+        pattern = r"^\P{Cc}*$",
+        example = "flow rate against density"
     )]
     pub name: Option<String>,
     /// Owner, whose share of the workers the sweep counts against; absent means `default`. If tokens are in use it is the token's
     /// owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
+    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty", deserialize_with = "bounded::tags")]
-    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
+    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(example = "paper-200m"))]
+    #[schema(example = "paper-200m")]
     pub preset: Option<String>,
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -53,13 +49,13 @@ pub struct SweepRequest {
     /// `string.sections[1].count`. An object changes the fields it names; `null` removes what is optional. An
     /// outer path is applied before those inside it. At most 200.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
-    #[cfg_attr(feature = "openapi", schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120})))]
+    #[schema(example = json!({"duration": 60, "operation.rotation_speed_rpm": 120}))]
     pub set: BTreeMap<String, Value>,
     /// Outputs that are kept of each point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
     /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as in the scenario. A point of 60 s takes some 4 MB in full,
     /// 0.5 MB as spectra and nothing as a summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(example = "full"))]
+    #[schema(example = "full")]
     pub outputs: Option<Outputs>,
     /// How the points are made from the axes; absent means `grid`.
     #[serde(default)]
@@ -69,29 +65,23 @@ pub struct SweepRequest {
     /// they are written. A sweep has at most 32 axes and 100,000 points, in a grid the product of the axes' counts; without axes it has
     /// one point.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty", deserialize_with = "bounded::axes")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(example = json!({
-            "flow_rate": {"values": [0.01, 0.04, 0.06]},
-            "mud_density": {"from": 1200, "to": 2100, "count": 4}
-        }))
-    )]
+    #[schema(example = json!({
+        "flow_rate": {"values": [0.01, 0.04, 0.06]},
+        "mud_density": {"from": 1200, "to": 2100, "count": 4}
+    }))]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`, each with a value for every parameter that the first names.
     #[serde(default, skip_serializing_if = "ListedPoints::is_empty")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))
-    )]
+    #[schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))]
     pub points: ListedPoints,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
+    #[schema(minimum = 1, maximum = 100_000)]
     pub samples: Option<u32>,
     /// Seed of these designs, any whole number from 0; 0 unless given. The same seed draws the same points, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
+    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.
@@ -103,59 +93,57 @@ pub struct SweepRequest {
     /// same request; of points that are added later as many are verified as make up that part, or that number, of the whole sweep.
     /// Results are at `GET /v1/sweeps/{id}/verification`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(exclusive_minimum = 0.0, example = 0.05))]
+    #[schema(exclusive_minimum = 0.0, example = 0.05)]
     pub verify: Option<f64>,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
+    #[schema(minimum = -10, maximum = 10)]
     pub priority: i32,
 }
 
 /// A word to find a sweep by.
-#[cfg(feature = "openapi")]
 #[derive(utoipa::ToSchema)]
 #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
 #[expect(dead_code, reason = "only its schema is used")]
 struct Tag(String);
 
 /// A single point, computed by the same machinery as a sweep.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RunRequest {
     /// A name for people, of 1 to 200 characters; absent means none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$"))]
+    #[schema(min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
     pub name: Option<String>,
     /// Owner, whose share of the workers the run counts against; absent means `default`. If tokens are in use it is the token's owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$"))]
+    #[schema(min_length = 1, max_length = 100, pattern = r"^\P{Cc}*$")]
     pub owner: Option<String>,
     /// Words to find it by, up to 20 of 1 to 100 characters; none unless given.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty", deserialize_with = "bounded::tags")]
-    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"])))]
+    #[schema(max_items = 20, value_type = Vec<Tag>, example = json!(["campaign-7"]))]
     pub tags: BTreeSet<String>,
     /// Name of a preset scenario, see `GET /v1/scenarios`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(example = "paper-200m"))]
+    #[schema(example = "paper-200m")]
     pub preset: Option<String>,
     /// A scenario in full.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<Box<Scenario>>,
     /// Changes to the scenario, by the path of the field. At most 200.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "bounded::changes")]
-    #[cfg_attr(feature = "openapi", schema(example = json!({"mud.flow_rate": 0.04})))]
+    #[schema(example = json!({"mud.flow_rate": 0.04}))]
     pub set: BTreeMap<String, Value>,
     /// Outputs that are kept of the point, in place of the scenario's `recording.outputs`: `"summary"` (its row of the table alone),
     /// `"spectra"`, `{"orbits": {...}}` or `"full"`; absent means as in the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(example = "full"))]
+    #[schema(example = "full")]
     pub outputs: Option<Outputs>,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
+    #[schema(minimum = -10, maximum = 10)]
     pub priority: i32,
 }
 
@@ -178,8 +166,7 @@ impl From<RunRequest> for SweepRequest {
 }
 
 /// Points to add to a sweep: of its scenario, over its own parameters, by any design.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AppendRequest {
     /// How the points are made from the axes; absent means `grid`.
@@ -187,27 +174,21 @@ pub struct AppendRequest {
     pub design: Design,
     /// The sweep's parameters with new values.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty", deserialize_with = "bounded::axes")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))
-    )]
+    #[schema(example = json!({"flow_rate": {"values": [0.02, 0.03]}, "mud_density": {"values": [1200]}}))]
     pub axes: IndexMap<AxisName, Axis>,
     /// The points of the design `list`.
     #[serde(default, skip_serializing_if = "ListedPoints::is_empty")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))
-    )]
+    #[schema(value_type = Vec<IndexMap<AxisName, f64>>, max_items = 100_000, example = json!([]))]
     pub points: ListedPoints,
     /// Number of points of the designs `latin_hypercube` and `sobol`, 1 to 100,000, which these designs need; usual ten and more
     /// for each axis, and powers of two for `sobol`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 100_000))]
+    #[schema(minimum = 1, maximum = 100_000)]
     pub samples: Option<u32>,
     /// Seed of these designs; 0 unless given. For further points of another Latin hypercube give another seed; of a
     /// Sobol sequence, `skip` with the same one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(maximum = 18_446_744_073_709_551_615_u64))]
+    #[schema(maximum = 18_446_744_073_709_551_615_u64)]
     pub seed: Option<u64>,
     /// Points at the start of the Sobol sequence to skip, so that a sweep goes on where another one of the same seed ended; 0
     /// unless given, below 2^32 with the samples.
@@ -269,31 +250,27 @@ impl SweepRequest {
 }
 
 /// Changes to a sweep; absent fields stay as they are.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepPatch {
     /// A name for people; `null` takes it away.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
-    #[cfg_attr(
-        feature = "openapi",
-        schema(value_type = Option<String>, min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")
-    )]
+    #[schema(value_type = Option<String>, min_length = 1, max_length = 200, pattern = r"^\P{Cc}*$")]
     pub name: Option<Option<String>>,
     /// Higher goes first among the sweeps of one owner.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "openapi", schema(minimum = -10, maximum = 10))]
+    #[schema(minimum = -10, maximum = 10)]
     pub priority: Option<i32>,
     /// Words to find it by, in place of those that it has.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "bounded::new_tags")]
-    #[cfg_attr(feature = "openapi", schema(max_items = 20, value_type = Option<Vec<Tag>>))]
+    #[schema(max_items = 20, value_type = Option<Vec<Tag>>)]
     pub tags: Option<BTreeSet<String>>,
     /// Whether the sweep, and all that belongs to it, is kept whatever its age.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pinned: Option<bool>,
     /// When the sweep is to be deleted, once all its points are final and unless it is pinned; `null` means never.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "time")]
-    #[cfg_attr(feature = "openapi", schema(value_type = Option<Timestamp>))]
+    #[schema(value_type = Option<Timestamp>)]
     pub expires: Option<Option<Timestamp>>,
 }
 
@@ -311,8 +288,7 @@ fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<Time
 }
 
 /// How points are made from the axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
     /// Every value of every axis with every value of the others.

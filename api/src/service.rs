@@ -8,8 +8,7 @@ use crate::design::SOBOL_AXES;
 use crate::problem::{FieldProblem, ProblemDetails};
 
 /// The bounds of what the service accepts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Limits {
     /// Points in one sweep.
     pub points_per_sweep: usize,
@@ -72,16 +71,14 @@ pub const LIMITS: Limits = Limits {
 };
 
 /// The preset scenarios.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ScenarioList {
     /// One entry a preset.
     pub scenarios: Vec<ScenarioEntry>,
 }
 
 /// A preset in the list.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ScenarioEntry {
     /// Its name, as a sweep's `preset`.
     pub name: String,
@@ -92,8 +89,7 @@ pub struct ScenarioEntry {
 }
 
 /// A preset in full.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ScenarioDetail {
     /// Its name, as a sweep's `preset`.
     pub name: String,
@@ -104,8 +100,7 @@ pub struct ScenarioDetail {
 }
 
 /// The text of a scenario file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     /// Format of the text.
@@ -115,8 +110,7 @@ pub struct ScenarioFile {
 }
 
 /// Format of a scenario file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ScenarioFormat {
     /// TOML.
@@ -149,16 +143,14 @@ impl ScenarioFile {
 }
 
 /// The worker processes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct WorkerList {
     /// One entry a process.
     pub workers: Vec<Worker>,
 }
 
 /// One worker process.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Worker {
     /// Identifier.
     pub id: String,
@@ -177,8 +169,7 @@ pub struct Worker {
 }
 
 /// The queue over all sweeps, in results to be computed: points that share a key are one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Queue {
     /// Queued for a worker.
     pub queued: u64,
@@ -191,8 +182,7 @@ pub struct Queue {
 }
 
 /// How long data are kept, and when it was last seen to that.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Retention {
     /// How often the service deletes what need not be kept; absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -209,8 +199,7 @@ pub struct Retention {
 }
 
 /// A collection of what need not be kept any more.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Collection {
     /// When the last one began.
     pub started: Timestamp,
@@ -223,8 +212,7 @@ pub struct Collection {
 }
 
 /// Deletions of a garbage collection.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(default)]
 pub struct Collected {
     /// Sweeps whose time had come.
@@ -248,16 +236,14 @@ pub struct Collected {
 }
 
 /// The answer of the health checks.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Health {
     /// `ok`.
     pub status: String,
 }
 
 /// A token to log in by.
-#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Login {
     /// Its text.
@@ -265,8 +251,7 @@ pub struct Login {
 }
 
 /// The session of a browser.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Session {
     /// Whether the service asks for tokens.
     pub tokens_required: bool,

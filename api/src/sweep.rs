@@ -9,8 +9,7 @@ use crate::request::{AppendRequest, SweepRequest};
 use crate::view::verification::WorstBias;
 
 /// A sweep with its counts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Sweep {
     /// Identifier.
     pub id: String,
@@ -66,8 +65,7 @@ pub struct Sweep {
 }
 
 /// A worker that queued points wait for: one of their version of the physics, since no other one may compute them.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct WaitingFor {
     /// Version of the physics by which the points are computed.
     pub physics_version: i64,
@@ -92,8 +90,7 @@ impl WaitingFor {
 }
 
 /// Data that go with a sweep that is deleted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SweepDeletion {
     /// Whether this only shows what would be deleted.
     pub dry_run: bool,
@@ -106,8 +103,7 @@ pub struct SweepDeletion {
 }
 
 /// The state of a sweep as a whole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepState {
     /// Some points, or reference runs that verify some, are not final yet.
@@ -133,8 +129,7 @@ impl SweepState {
 }
 
 /// Numbers of points by state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct PointCounts {
     /// All points.
     pub total: u64,
@@ -151,8 +146,7 @@ pub struct PointCounts {
 }
 
 /// How far a sample of a sweep's points is verified, and what that shows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SweepVerification {
     /// The reference runs by state; `total` is how many were wanted.
     pub counts: PointCounts,
@@ -166,16 +160,14 @@ pub struct SweepVerification {
 }
 
 /// The columns of a sweep's table, as far as its points have any.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ColumnList {
     /// The columns, in their order.
     pub columns: Vec<ColumnEntry>,
 }
 
 /// A column without its values.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ColumnEntry {
     /// Its name; `GET /v1/quantities` says what it stands for.
     pub name: String,
@@ -187,8 +179,7 @@ pub struct ColumnEntry {
 }
 
 /// Kind of the values of a column; of every kind some may be missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnKind {
     /// Whole numbers.
@@ -216,8 +207,7 @@ impl ColumnList {
 }
 
 /// Where to read more about a sweep.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SweepLinks {
     /// The sweep itself.
     #[serde(rename = "self")]
@@ -262,8 +252,7 @@ impl SweepLinks {
 }
 
 /// A page of sweeps, newest first.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SweepList {
     /// The sweeps.
     pub sweeps: Vec<Sweep>,

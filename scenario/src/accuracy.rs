@@ -7,8 +7,7 @@ use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// How finely time is resolved: a preset, a tolerance, or integrator and step in full.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum Accuracy {
     /// A named preset.
@@ -20,8 +19,7 @@ pub enum Accuracy {
 }
 
 /// The relative error that time integration may make.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyTarget {
     /// Of statistics over the windows that are read, such as the size of an orbit: 0.0001 to 0.1, usual 0.003 to 0.08. The longest
@@ -173,8 +171,7 @@ struct Fields {
 
 /// Named accuracies, by the error allowed in the size of an orbit and in the standard deviation of its radius: `draft` 8 and 15 %,
 /// `standard` 2 and 5 %, `reference` 0.3 and 1 %.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyPreset {
     /// 8 % of the size of an orbit, 15 % of the standard deviation of its radius.
@@ -225,8 +222,7 @@ impl AccuracyPreset {
 }
 
 /// An integrator and its step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeStepping {
     /// The method.
@@ -295,8 +291,7 @@ fn two() -> u32 {
 /// Time integration methods: `esdirk4` is ESDIRK4(3)6L (Kennedy and Carpenter 2003), order 4, L-stable, the method of all named
 /// accuracies; `generalized_alpha` (Chung and Hulbert 1993) has order 2 and fixed steps; `rk4` is the classical Runge-Kutta method
 /// of order 4, the paper's, explicit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
     /// Generalized-alpha (Chung and Hulbert 1993) with spectral radius 0.8 at infinity, order 2.

@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Whether a term of the model takes part: `auto` leaves it out only where it could not change a number, or where nothing is asked
 /// for that it decides; `on` and `off` are obeyed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
     /// The term is assembled where the scene calls for it: left out only where it could not change a number, or where
@@ -20,8 +19,7 @@ pub enum Switch {
 
 /// How far `auto` goes in leaving effects out: `exact` leaves out what could not change a number, `aggressive` also gyroscopic
 /// moments, Coriolis terms and flow stiffness that are estimated to change frequencies by less than a thousandth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AutoRule {
     /// Terms that could not change a number.
@@ -46,8 +44,7 @@ impl Switch {
 macro_rules! effects {
     ($($(#[$doc:meta])* $field:ident / $variant:ident,)*) => {
         /// The switches of one scenario.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-        #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
         #[serde(deny_unknown_fields, default)]
         pub struct Effects {
             /// How far `auto` goes; absent means `exact`.
@@ -60,8 +57,7 @@ macro_rules! effects {
         pub struct ActiveEffects { $($(#[$doc])* pub $field: bool,)* }
 
         /// One effect.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
         #[serde(rename_all = "snake_case")]
         pub enum Effect { $($(#[$doc])* $variant,)* }
 

@@ -37,8 +37,7 @@ pub use window::{OrbitWindow, WindowName};
 use serde::{Deserialize, Serialize};
 
 /// The complete description of one simulated point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 // Its traits of serde are in format.rs.
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct Scenario {
@@ -88,8 +87,7 @@ pub struct Scenario {
 }
 
 /// The well: a survey interpolated by minimum curvature (docs/model/well.md) and one open hole.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Well {
     /// Diameter of the hole, D_ch \[m\], larger than every outer diameter and at most 5; usual 0.1 to 0.45. Below 0.05 (slimmer than
@@ -103,8 +101,7 @@ pub struct Well {
 }
 
 /// One survey station.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurveyStation {
     /// Measured depth \[m\], counted from the top of the string: 0 at the first station, then strictly increasing; usual 10 to 30
@@ -118,8 +115,7 @@ pub struct SurveyStation {
 }
 
 /// The drillstring: its material, sections from the top, gauges and unbalance masses on them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrillString {
     /// The steel (or other material) of every section and tool joint that has none of its own.
@@ -149,8 +145,7 @@ impl DrillString {
 }
 
 /// Linear elastic material. Values for what strings are made of, with their source, are in docs/model/beam.md, Section.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Young's modulus E \[Pa\], above 0 and at most 1.5e12; usual 2.0e11 to 2.1e11 for steel, 7e10 for aluminium, 1.1e11 for
@@ -167,8 +162,7 @@ pub struct Material {
 }
 
 /// `count` equal pieces of pipe, one after the other.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Section {
     /// Kind of the section; it decides which target element length holds, and nothing else.
@@ -201,8 +195,7 @@ fn one() -> u32 {
 
 /// The kinds of section that a mesh distinguishes: `drillpipe` (heavy-weight drillpipe too), `collar`, `stabilizer` (its body; its
 /// blades are a gauge) and `bit`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionKind {
     /// Drillpipe (or heavy-weight drillpipe).
@@ -216,8 +209,7 @@ pub enum SectionKind {
 }
 
 /// A tool joint, one at each end of a piece of pipe.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ToolJoint {
     /// Length of one joint \[m\], less than half of the piece; usual 0.2 to 0.4. Where joints rest on the wall, orbits of the pipe
@@ -236,8 +228,7 @@ pub struct ToolJoint {
 
 /// A place where the radial clearance is given instead of following from the diameters
 /// (a contact matter only: the mud flows past it as past the body, docs/model/mud.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gauge {
     /// Measured depth \[m\], on the string. Within a twentieth of the target element length of another boundary it is moved there,
@@ -250,8 +241,7 @@ pub struct Gauge {
 }
 
 /// A mass off the axis, turning with the string (docs/model/motion.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnbalanceMass {
     /// Measured depth \[m\], on the string; at the top node, which is held, a mass does nothing. Within a twentieth of the target
@@ -271,8 +261,7 @@ pub struct UnbalanceMass {
 }
 
 /// The mud: a yield-power-law fluid pumped down the bore and up the annulus (docs/model/mud.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mud {
     /// Density rho_f \[kg/m3\], above 0 and at most 10000; usual 1000 to 2300, below 800 (oil) and above 2600 (21.7 lb/gal) is
@@ -321,8 +310,7 @@ pub struct Mud {
 
 /// Flow regimes considered by the friction factors: `auto` is laminar, transitional and turbulent by the Reynolds number, `laminar`
 /// is laminar at any Reynolds number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RegimeChoice {
     /// Laminar, transitional and turbulent by the Reynolds number.
@@ -334,8 +322,7 @@ pub enum RegimeChoice {
 }
 
 /// Rotation and end loads.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Operation {
     /// Speed of rotation imposed at the top \[rpm\], clockwise seen from above, negative the other way; at most 10000 either way,
@@ -358,8 +345,7 @@ pub struct Operation {
 
 /// Boundary condition of the top node, in the frame that turns with the string: `clamped` holds all six degrees of freedom,
 /// `pinned` leaves the lateral rotations free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TopCondition {
     /// All six degrees of freedom are held.
@@ -370,8 +356,7 @@ pub enum TopCondition {
 }
 
 /// Borehole contact, equations (10) to (14) of the paper.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactLaw {
     /// Whether stiffness and damping are a node's or a length's; absent means `per_node`.
@@ -451,8 +436,7 @@ impl ContactLaw {
 /// Basis of the wall's stiffness and damping: with `per_node`, the paper's law, they belong to every node, so that a finer mesh meets a
 /// stiffer wall; with `per_length` to the length of string in contact, so that every mesh meets the same wall, and to gauges as they
 /// are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WallLaw {
     /// The paper's: every node has `stiffness` and `damping`, so a finer mesh meets a stiffer wall.
@@ -466,8 +450,7 @@ pub enum WallLaw {
 
 /// Normal force when the contact's damper would pull: with `allowed` it may turn negative, with `none` it is never
 /// negative.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Adhesion {
     /// The paper's law as printed: the normal force may be negative, a pull, and brakes like a push.
@@ -478,8 +461,7 @@ pub enum Adhesion {
 }
 
 /// Rayleigh damping C = alpha M + beta (K + K_s) of the structure.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RayleighDamping {
     /// alpha \[1/s\], 0 or more; usual 0 to 0.5. The damping ratio alpha / (2 omega) falls with frequency: 0.03 1/s is 0.12 % at 2
@@ -492,8 +474,7 @@ pub struct RayleighDamping {
 }
 
 /// Data kept of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recording {
     /// Recording rate \[Hz\], above 0; usual 100 to 2000. Frequencies above half of it fold back into the spectra, and below 250 Hz
@@ -533,8 +514,7 @@ pub struct Recording {
 }
 
 /// One node, by number (1 is the top) or by measured depth (the nearest node).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NodeChoice {
     /// Node number, 1 at the top, which is held and has a constant record. Numbers are those of one mesh: another one has other
@@ -546,8 +526,7 @@ pub enum NodeChoice {
 }
 
 /// A half-open interval of simulated time \[from, to) \[s\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeWindow {
     /// Start \[s\], included; 0 or more.

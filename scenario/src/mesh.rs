@@ -14,8 +14,7 @@ use crate::Scenario;
 /// whatever lies on the wall by itself (collars, stabilizers, plain pipe) elements of two thirds of the length (4 E I / kappa)^(1/4) over which a wall of
 /// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. The accuracy chooses the factor: 1.4 at `draft`, 1 at `standard`,
 /// 0.4 at `reference`. Depths whose motion is recorded are nodes. It is meant for the contact law `per_length`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum Mesh {
     /// Lengths that follow from the string, its wall and the accuracy.
@@ -27,8 +26,7 @@ pub enum Mesh {
 }
 
 /// Meshes with a name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeshName {
     /// Lengths that follow from the string, its wall and the accuracy.
@@ -36,8 +34,7 @@ pub enum MeshName {
 }
 
 /// The mesh `auto` with a factor of its own in place of the accuracy's.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScaledMesh {
     /// Factor on all lengths of `auto`, above 0; usual 0.25 to 1.4: 0.5 makes every element half as long. Above 1.5 elements are
@@ -49,8 +46,7 @@ pub struct ScaledMesh {
 /// masses) is cut into equal elements no longer than its kind's target, at most 20,000 in all. Contact acts at nodes, so that long
 /// elements miss it between them. Short ones cost time, lower RK4's stability limit in proportion, and with the law `per_node` make
 /// the wall stiffer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElementLengths {
     /// Drillpipe bodies \[m\]; usual 0.5 to 3. Too long makes the pipe too stiff against buckling between its joints.

@@ -6,8 +6,7 @@ use crate::{NodeChoice, TimeWindow};
 
 /// Data kept of a point in addition to its row of scalars, which is always there: `"summary"`, `"spectra"`,
 /// `{"orbits": {...}}` or `"full"`. Each class has all that the one before it has, but for the spectra, which follow from histories.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outputs {
     /// Nothing.
@@ -23,8 +22,7 @@ pub enum Outputs {
 }
 
 /// Which part of the histories is kept.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitOutputs {
     /// Histories of these nodes, which must be recorded; absent means all that are.

@@ -13,8 +13,7 @@ pub const MOST_PROBLEMS: usize = 100;
 
 /// A preset or a full scenario, and what to change in it:
 /// `{"preset": "paper-200m", "set": {"mud.flow_rate": 0.02, "mud.density": 1500}}`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioRequest {
     /// Name of a preset; either this or `scenario`.

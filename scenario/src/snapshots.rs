@@ -6,8 +6,7 @@ use crate::{Scenario, TimeWindow};
 
 /// Snapshots of the whole string: of every node its displacements and the normal force of the wall, at a rate that is modest beside the
 /// recording rate, as the table `snapshots`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshots {
     /// Snapshots per second of simulated time \[Hz\], above 0: `recording.rate_hz` or a whole part of it, such as 25 of 1000; usual 10

@@ -6,8 +6,7 @@ use crate::Scenario;
 
 /// The equilibrium that a run starts from. A run starts at rest in the turning frame, so that its string slides along the wall from the
 /// first moment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
     /// Friction of the equilibrium: `break_away` (mu_s, the paper's) or `sliding` (mu at the speed at which each node slides); absent
@@ -25,8 +24,7 @@ pub struct Statics {
 
 /// Friction of an equilibrium: `break_away` is the static coefficient mu_s at every node that touches, `sliding` the friction curve at
 /// each node's sliding speed; either acts against the imposed rotation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StartFriction {
     /// mu_s at every node that touches, equation (36) of the paper: the string that is about to turn.
@@ -56,8 +54,7 @@ impl StartFriction {
 }
 
 /// Starts of a point's run: `one`, or `both` to compare their statistics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Starts {
     /// The equilibrium with the friction of the scenario.

@@ -6,8 +6,7 @@ use crate::{AccuracyPreset, Effect, Integrator, Scenario, TimeStepping};
 
 /// A work-precision study: instead of one run, runs at several accuracies, and of several meshes, against what two methods of
 /// different kind both reach.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CostStudy {
     /// Simulated time of each run \[s\], 80 recording intervals or more and a whole number of them. Absent means the scenario's own
@@ -70,8 +69,7 @@ const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// The reference of a study: two methods of different kind. What both reach is the reference; a statistic in which they differ
 /// by more than is allowed has none.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyReference {
     /// The two methods; absent means `rk4` with 0.95 of its stability limit on the mesh, and `esdirk4` with 0.125 ms and up to 30 contact iterations;
@@ -94,8 +92,7 @@ pub struct StudyReference {
 }
 
 /// One method and the steps to try it with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MethodSteps {
     /// The method.

@@ -12,8 +12,7 @@ use crate::{FEWEST_SAMPLES, Scenario, TimeWindow};
 ///
 /// With `settled` the run goes on in blocks of 10 s until statistics of consecutive windows agree, or until the confidence interval of
 /// irregular motion is as narrow as the accuracy promises, and ends there; `duration` is the longest that it may take.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum OrbitWindow {
     /// Chosen by the run.
@@ -23,8 +22,7 @@ pub enum OrbitWindow {
 }
 
 /// Windows with a name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WindowName {
     /// The end of the run, once the motion has settled.

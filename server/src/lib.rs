@@ -9,7 +9,6 @@ mod exposition;
 mod garbage;
 mod guard;
 mod listen;
-#[cfg(feature = "openapi")]
 mod openapi;
 mod route;
 mod router;
@@ -21,7 +20,5 @@ pub use app::limit::OwnerLimits;
 pub use app::retention::RetentionConfig;
 pub use exposition::Exposition;
 pub use listen::ConnectionLimits;
-#[cfg(feature = "openapi")]
-pub use openapi::openapi_of_annotations;
 pub use router::{OPENAPI_JSON, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

@@ -9,17 +9,16 @@ use serde_json::Value;
 use crate::quantity::unit;
 
 /// A table by columns, all of one length. A value that does not exist is `null`, never NaN.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Table {
     /// Attributes of the table as a whole, such as the node, its depth, or the number of samples.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub attributes: IndexMap<String, Value>,
     /// The columns, by name.
-    #[cfg_attr(feature = "openapi", schema(example = json!({"time": [0.0, 0.001], "u_49": [0.0129, 0.0131]})))]
+    #[schema(example = json!({"time": [0.0, 0.001], "u_49": [0.0129, 0.0131]}))]
     pub columns: IndexMap<String, Column>,
     /// Units of the columns that have one (`1` for ratios), by column name.
-    #[cfg_attr(feature = "openapi", schema(example = json!({"time": "s", "u_49": "m"})))]
+    #[schema(example = json!({"time": "s", "u_49": "m"}))]
     pub units: IndexMap<String, String>,
 }
 
@@ -219,7 +218,6 @@ mod finite_or_null_single {
 }
 
 /// Schema of the columns for the OpenAPI document.
-#[cfg(feature = "openapi")]
 mod schema {
     use utoipa::openapi::schema::AnyOfBuilder;
     use utoipa::openapi::{RefOr, Schema};

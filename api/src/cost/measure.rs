@@ -6,8 +6,7 @@ use drillsweep_sim::study::cost::{CostReport, CostRow, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// The error that a chart shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
     /// Of the orbit's size, over the orbit window.

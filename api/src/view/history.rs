@@ -5,8 +5,7 @@ use drillsweep_table::{Column, Table};
 use serde::Deserialize;
 
 /// Which rows of a history stay where at most so many are asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Decimation {
     /// Every k-th row: equal intervals of time, and extremes between them are lost.

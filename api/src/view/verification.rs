@@ -148,8 +148,7 @@ impl VerifiedPoint {
 }
 
 /// Bias of one statistic at the verified points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct StatisticBias {
     /// Points at which its bias is known.
     pub verified: usize,
@@ -171,8 +170,7 @@ pub struct StatisticBias {
 }
 
 /// The bias of orbit size that is farthest from zero.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct WorstBias {
     /// Name of the statistic in the summary, such as `orbit_radius_rms_49`.
     pub statistic: String,

@@ -19,8 +19,7 @@ use crate::answer::error::{Error, Result};
 use crate::answer::stored::{Stored, StoredFile};
 
 /// The formats in which tables are served.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum TableFormat {
     /// An object of columns.
@@ -34,8 +33,7 @@ pub(crate) enum TableFormat {
 }
 
 /// The formats in which tables are served that can be shown as a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PictureFormat {
     /// An object of columns.

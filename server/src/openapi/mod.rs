@@ -1,5 +1,4 @@
-//! The OpenAPI document, out of the annotations of routes and types. What is served is the committed document; that both are the same is
-//! for tests to see.
+//! The OpenAPI document: description of the service as a whole, and the additions that annotations of routes and types cannot express.
 
 pub(crate) mod answers;
 mod vocabulary;
@@ -9,17 +8,18 @@ use drillsweep_api::{
 };
 use drillsweep_table::Table;
 use serde_json::{Value, json};
+use utoipa::openapi::OpenApi;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
-use utoipa::{Modify, OpenApi};
+use utoipa::{Modify, OpenApi as _};
 
-use crate::route::{
-    all_events, cost, events, export, files, health, points, quantities, results, scenarios, scene, session,
-    snapshots, spectrogram, statistics, status, sweeps, verification,
-};
+/// The document without routes.
+pub(crate) fn service() -> OpenApi {
+    Document::openapi()
+}
 
-/// The document as it is committed: indented JSON with a final newline.
-pub fn openapi_of_annotations() -> String {
-    let mut document = json!(Document::openapi());
+/// The document as indented JSON with a final newline.
+pub(crate) fn json(document: &OpenApi) -> String {
+    let mut document = json!(document);
     vocabulary::describe(&mut document);
     bound_members(&mut document);
     format!("{document:#}\n")
@@ -40,8 +40,8 @@ fn bound_members(document: &mut Value) {
     }
 }
 
-/// Description of the service as a whole in the document, and the routes and types whose annotations it is made of.
-#[derive(OpenApi)]
+/// Description of the service as a whole, and the types that no route names.
+#[derive(utoipa::OpenApi)]
 #[openapi(
     info(
         title = "drillsweep",
@@ -49,58 +49,6 @@ fn bound_members(document: &mut Value) {
         description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
-    ),
-    paths(
-        sweeps::create,
-        sweeps::list,
-        sweeps::show,
-        sweeps::change,
-        sweeps::delete,
-        sweeps::cancel,
-        sweeps::retry,
-        sweeps::pause,
-        sweeps::resume,
-        sweeps::table,
-        sweeps::columns,
-        verification::show,
-        events::follow,
-        all_events::follow,
-        export::export,
-        sweeps::create_run,
-        points::list,
-        sweeps::append,
-        points::show,
-        points::failures,
-        files::list,
-        files::show,
-        results::profile,
-        results::statics,
-        results::history,
-        snapshots::show,
-        results::orbit,
-        results::spectrum,
-        spectrogram::show,
-        results::contacts,
-        results::energy,
-        results::course,
-        statistics::show,
-        scene::plan,
-        scene::modes,
-        cost::show,
-        scenarios::list,
-        scenarios::read,
-        scenarios::show,
-        quantities::list,
-        status::workers,
-        status::queue,
-        status::limits,
-        status::retention,
-        session::show,
-        session::open,
-        session::close,
-        crate::router::show,
-        health::alive,
-        health::ready,
     ),
     components(schemas(
         ProblemDetails, Table, ExportManifest, PointEvent, DeletedSweep, PointList, SelectedPointList
@@ -120,7 +68,7 @@ struct Document;
 struct TokenSecurity;
 
 impl Modify for TokenSecurity {
-    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+    fn modify(&self, document: &mut OpenApi) {
         let scheme = HttpBuilder::new()
             .scheme(HttpAuthScheme::Bearer)
             .description(Some(

@@ -20,7 +20,6 @@ use crate::app::App;
 use crate::app::feed::{News, Told};
 use crate::app::shares::Share;
 use crate::guard::caller::Caller;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::events::{RETRY, last_seen};
 use crate::route::feed;
@@ -30,8 +29,8 @@ use crate::route::feed;
 const OVERLAP: i64 = 300_000;
 
 /// Of which sweeps a stream tells, and where it begins.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AllEventsQuery {
     /// Only sweeps of this owner.
@@ -50,21 +49,18 @@ pub(crate) struct AllEventsQuery {
 /// that are not final, and has no end. An `id` is a time: a stream that is resumed by it, at whichever server, begins also with the
 /// sweeps that have become final since, some minutes before included. Of what else was missed it does not tell: deletions, and
 /// changes of finished sweeps (name, tags, pin, expiry); who shows a list reads it again.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/events",
-        tag = "sweeps",
-        operation_id = "follow_all_sweeps",
-        params(
-            AllEventsQuery,
-            ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
-        ),
-        responses(
-            (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/events",
+    tag = "sweeps",
+    operation_id = "follow_all_sweeps",
+    params(
+        AllEventsQuery,
+        ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
+    ),
+    responses(
+        (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
+        Problems
     )
 )]
 pub(crate) async fn follow(

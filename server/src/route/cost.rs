@@ -13,27 +13,25 @@ use crate::answer::blocking::blocking;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::results::PointPath;
 
 /// How a study is served.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CostQuery {
     /// Format of the answer.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: CostFormat,
     /// Which error a chart shows; absent means the first of orbit size, radius deviation and trajectory that has any.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     measure: Option<Measure>,
 }
 
 /// The formats in which a study is served.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum CostFormat {
     /// The report in full.
@@ -63,23 +61,20 @@ impl CostFormat {
 /// Only a point whose scenario has a `cost_study` has one: accuracies, methods, steps and meshes against what two methods of
 /// different kind both reach over the windows that are read, each with its errors and its processor time, and the cheapest way
 /// to some accuracies. If the two do not agree, it reports that no reference exists.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/cost",
-        tag = "points",
-        operation_id = "get_cost",
-        params(PointPath, CostQuery),
-        responses(
-            (status = 200, description = "The study", content(
-                (CostReport = "application/json"),
-                (String = "text/csv"),
-                (String = "image/svg+xml"),
-                (Vec<u8> = "image/png")
-            )),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/cost",
+    tag = "points",
+    operation_id = "get_cost",
+    params(PointPath, CostQuery),
+    responses(
+        (status = 200, description = "The study", content(
+            (CostReport = "application/json"),
+            (String = "text/csv"),
+            (String = "image/svg+xml"),
+            (Vec<u8> = "image/png")
+        )),
+        Problems
     )
 )]
 pub(crate) async fn show(

@@ -20,7 +20,6 @@ use crate::answer::records;
 use crate::app::App;
 use crate::app::shares::Share;
 use crate::guard::caller::Caller;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::{PROGRESS_INTERVAL, load};
 
@@ -33,8 +32,8 @@ const PAGE: i64 = 500;
 pub(crate) const RETRY: Duration = Duration::from_secs(2);
 
 /// Where a stream begins.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EventsQuery {
     /// As the header `Last-Event-ID`, for clients that cannot set headers; the header wins.
@@ -49,23 +48,20 @@ pub(crate) struct EventsQuery {
 /// every two seconds while there is progress. Without `Last-Event-ID` the stream begins now; with it, after that event; with 0, at
 /// the first that is kept. It ends with the event `sweep` that everything is final, whose id is above that of the last `point`; who has
 /// seen that and connects again is answered 204, which ends the matter for a browser's EventSource.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/events",
-        tag = "sweeps",
-        operation_id = "follow_sweep",
-        params(
-            ("id" = String, Path, description = "Identifier of the sweep"),
-            EventsQuery,
-            ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
-        ),
-        responses(
-            (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
-            (status = 204, description = "There are no further events"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/events",
+    tag = "sweeps",
+    operation_id = "follow_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        EventsQuery,
+        ("Last-Event-ID" = Option<u64>, Header, description = "`id` of the last event that was seen."),
+    ),
+    responses(
+        (status = 200, description = "The stream", body = String, content_type = "text/event-stream"),
+        (status = 204, description = "There are no further events"),
+        Problems
     )
 )]
 pub(crate) async fn follow(

@@ -23,7 +23,6 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::stored::Stored;
 use crate::app::App;
 use crate::app::lane::Place;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::verification::{Verified, memory_of_points};
 
@@ -31,13 +30,13 @@ use crate::route::verification::{Verified, memory_of_points};
 const PAGE: i64 = 200;
 
 /// Contents of an archive.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ExportQuery {
     /// Names of the files of each point, separated by commas; absent means all, empty means none.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "profile,statics"))]
+    #[param(value_type = Option<String>, example = "profile,statics")]
     artifacts: Option<Vec<String>>,
 }
 
@@ -47,16 +46,13 @@ pub(crate) struct ExportQuery {
 /// verified point, where there are some), the files of every point that has a result, as `points/1/history.parquet`, and last
 /// `manifest.json`: which files should be there and are not, and why (`ExportManifest`). It is written while it is sent: its size is not
 /// known beforehand, and an archive that breaks off has no directory at its end, so that no program takes it for whole.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/export",
-        tag = "sweeps",
-        operation_id = "export_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep"), ExportQuery),
-        responses((status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip"), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/export",
+    tag = "sweeps",
+    operation_id = "export_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ExportQuery),
+    responses((status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip"), Problems)
 )]
 pub(crate) async fn export(
     State(app): State<App>,

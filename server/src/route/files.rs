@@ -14,36 +14,32 @@ use crate::answer::json::Json;
 use crate::answer::records;
 use crate::answer::stored::Stored;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 use crate::route::results::PointPath;
 
 /// Which file.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Path)]
 pub(crate) struct ArtifactPath {
     /// Identifier of the sweep.
     id: String,
     /// Number of the point in the sweep, from 1.
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     n: u32,
     /// Name of the file, as the list of files has it; it may end as the file's link does, in `.parquet` or `.json`, so that what is
     /// saved under the link's name has its extension.
-    #[cfg_attr(feature = "openapi", param(example = "history.parquet"))]
+    #[param(example = "history.parquet")]
     name: String,
 }
 
 /// The files of a point's result
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/artifacts",
-        tag = "points",
-        operation_id = "list_artifacts",
-        params(PointPath),
-        responses((status = 200, description = "Every file, by name", body = ArtifactList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/artifacts",
+    tag = "points",
+    operation_id = "list_artifacts",
+    params(PointPath),
+    responses((status = 200, description = "Every file, by name", body = ArtifactList), Problems)
 )]
 pub(crate) async fn list(
     State(app): State<App>,
@@ -73,31 +69,28 @@ pub(crate) async fn list(
 ///
 /// Its `ETag` is the BLAKE3 hash of its content. `Range` brings one range of bytes; of several ranges asked for at once
 /// the whole file is the answer, as RFC 9110 allows.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/artifacts/{name}",
-        tag = "points",
-        operation_id = "get_artifact",
-        params(
-            ArtifactPath,
-            ("Range" = Option<String>, Header, description = "Which bytes, such as `bytes=0-1023`."),
-            ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still current."),
-            ("If-Range" = Option<String>, Header, description = "The `ETag` under which `Range` holds."),
-        ),
-        responses(
-            (status = 200, description = "The file", content(
-                (Vec<u8> = "application/vnd.apache.parquet"),
-                (serde_json::Value = "application/json")
-            )),
-            (status = 206, description = "The range of it", content(
-                (Vec<u8> = "application/vnd.apache.parquet"),
-                (Vec<u8> = "application/json")
-            )),
-            (status = 304, description = "The copy is current"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/artifacts/{name}",
+    tag = "points",
+    operation_id = "get_artifact",
+    params(
+        ArtifactPath,
+        ("Range" = Option<String>, Header, description = "Which bytes, such as `bytes=0-1023`."),
+        ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still current."),
+        ("If-Range" = Option<String>, Header, description = "The `ETag` under which `Range` holds."),
+    ),
+    responses(
+        (status = 200, description = "The file", content(
+            (Vec<u8> = "application/vnd.apache.parquet"),
+            (serde_json::Value = "application/json")
+        )),
+        (status = 206, description = "The range of it", content(
+            (Vec<u8> = "application/vnd.apache.parquet"),
+            (Vec<u8> = "application/json")
+        )),
+        (status = 304, description = "The copy is current"),
+        Problems
     )
 )]
 pub(crate) async fn show(

@@ -9,7 +9,6 @@ use tokio::time::{Instant, timeout};
 use crate::answer::error::{Error, Result};
 use crate::answer::json::Json;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
 /// How long an answer holds: everybody may ask, and each try writes to the disk.
@@ -19,16 +18,13 @@ const FRESH: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Whether the process answers at all
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/livez",
-        tag = "service",
-        operation_id = "is_alive",
-        security(()),
-        responses((status = 200, description = "It does", body = Health), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/livez",
+    tag = "service",
+    operation_id = "is_alive",
+    security(()),
+    responses((status = 200, description = "It does", body = Health), Problems)
 )]
 pub(crate) async fn alive() -> Json<Health> {
     Json(Health { status: "ok".to_owned() })
@@ -38,16 +34,13 @@ pub(crate) async fn alive() -> Json<Health> {
 ///
 /// A scratch point is queued and claimed as a worker would, and taken back; a scratch blob is written, read and
 /// deleted. It is not ready either if submissions wait and none has been expanded for 15 s.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/readyz",
-        tag = "service",
-        operation_id = "is_ready",
-        security(()),
-        responses((status = 200, description = "It can", body = Health), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/readyz",
+    tag = "service",
+    operation_id = "is_ready",
+    security(()),
+    responses((status = 200, description = "It can", body = Health), Problems)
 )]
 pub(crate) async fn ready(State(app): State<App>) -> Result<Json<Health>> {
     if app.expansions.is_stuck() {

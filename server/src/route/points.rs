@@ -14,42 +14,38 @@ use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{PointPageResponse, Problems};
 use crate::route::results::PointPath;
 
 /// Which points are listed.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ListQuery {
     /// Only points in this state.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     state: Option<PointState>,
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
+    #[param(minimum = 1, maximum = 500)]
     limit: Option<u32>,
     /// `next` of the page before.
-    #[cfg_attr(feature = "openapi", param(min_length = 1))]
+    #[param(min_length = 1)]
     cursor: Option<String>,
     /// Only these fields of each point, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "ordinal,state"))]
+    #[param(value_type = Option<String>, example = "ordinal,state")]
     fields: Option<Vec<String>>,
 }
 
 /// The points of a sweep, in order
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points",
-        tag = "points",
-        operation_id = "list_points",
-        params(("id" = String, Path, description = "Identifier of the sweep"), ListQuery),
-        responses(PointPageResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points",
+    tag = "points",
+    operation_id = "list_points",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ListQuery),
+    responses(PointPageResponse, Problems)
 )]
 pub(crate) async fn list(
     State(app): State<App>,
@@ -100,21 +96,21 @@ fn select(row: &PointRow, fields: &[String]) -> Result<Map<String, Value>> {
 }
 
 /// Which failures are listed.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FailuresQuery {
     /// Only points of sweeps of this owner.
     owner: Option<String>,
     /// Only points that failed in this way.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     class: Option<FailureClass>,
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
+    #[param(minimum = 1, maximum = 500)]
     limit: Option<u32>,
     /// `next` of the page before.
-    #[cfg_attr(feature = "openapi", param(min_length = 1))]
+    #[param(min_length = 1)]
     cursor: Option<String>,
 }
 
@@ -122,16 +118,13 @@ pub(crate) struct FailuresQuery {
 ///
 /// Points that failed for good, or that brought down three workers (class `crash`). `POST /v1/sweeps/{id}/retry` queues those
 /// of a sweep again. Reference runs that only verify a point are at `GET /v1/sweeps/{id}/verification`.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/failures",
-        tag = "points",
-        operation_id = "list_failures",
-        params(FailuresQuery),
-        responses((status = 200, description = "A page of points", body = FailureList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/failures",
+    tag = "points",
+    operation_id = "list_failures",
+    params(FailuresQuery),
+    responses((status = 200, description = "A page of points", body = FailureList), Problems)
 )]
 pub(crate) async fn failures(
     State(app): State<App>,
@@ -166,16 +159,13 @@ fn failure_place(cursor: &str) -> Result<FailurePlace> {
 }
 
 /// One point: state, parameters, summary, provenance
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}",
-        tag = "points",
-        operation_id = "get_point",
-        params(PointPath),
-        responses((status = 200, description = "The point in its present state", body = PointDetail), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}",
+    tag = "points",
+    operation_id = "get_point",
+    params(PointPath),
+    responses((status = 200, description = "The point in its present state", body = PointDetail), Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

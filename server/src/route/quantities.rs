@@ -5,11 +5,9 @@ use std::sync::LazyLock;
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_table::quantity;
-#[cfg(feature = "openapi")]
 use drillsweep_table::quantity::QuantityEntry;
 
 use crate::answer::error::{Error, Result};
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 
 /// Meaning of columns and fields, with their units
@@ -17,20 +15,17 @@ use crate::openapi::answers::{Conditional, Problems};
 /// By name: of columns without the number of a node (`u_49` is `u`) and of a spectrum window (`line_amplitude_49_w1`), and without what an
 /// ensemble or a reference makes of them (`ensemble_mean_`, `spread_`, `reference_`, `bias_`; biases are relative, but for frequencies); of a
 /// scenario's fields by their path without indices. Needs no token, like this document.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/quantities",
-        tag = "service",
-        operation_id = "list_quantities",
-        params(Conditional),
-        security(()),
-        responses(
-            (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
-            (status = 304, description = "The copy is right"),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/quantities",
+    tag = "service",
+    operation_id = "list_quantities",
+    params(Conditional),
+    security(()),
+    responses(
+        (status = 200, description = "The vocabulary", body = std::collections::BTreeMap<String, QuantityEntry>),
+        (status = 304, description = "The copy is right"),
+        Problems
     )
 )]
 pub(crate) async fn list() -> Result<Response> {

@@ -23,45 +23,44 @@ use crate::answer::records;
 use crate::answer::snapshots::Snapshots;
 use crate::answer::stored::{Stored, StoredFile};
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems, TableResponse};
 
 /// Which point's result.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Path))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Path)]
 pub(crate) struct PointPath {
     /// Identifier of the sweep.
     pub(crate) id: String,
     /// Number of the point in the sweep, from 1.
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     pub(crate) n: u32,
 }
 
 /// How a table is served.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TableQuery {
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     pub(crate) format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     pub(crate) fields: Option<Vec<String>>,
 }
 
 /// How a table is served that can be shown as a picture.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PictureQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     pub(crate) format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, what it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     pub(crate) fields: Option<Vec<String>>,
 }
 
@@ -69,16 +68,13 @@ pub(crate) struct PictureQuery {
 ///
 /// Eccentricity, friction coefficient C_f, apparent viscosity, flow regime, pressures, tension and torque at
 /// the equilibrium, from the top down. A picture shows C_f, or the `fields`, over depth.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/profile",
-        tag = "points",
-        operation_id = "get_profile",
-        params(PointPath, PictureQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/profile",
+    tag = "points",
+    operation_id = "get_profile",
+    params(PointPath, PictureQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn profile(
     State(app): State<App>,
@@ -108,16 +104,13 @@ pub(crate) async fn profile(
 }
 
 /// The static equilibrium, node by node
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/statics",
-        tag = "points",
-        operation_id = "get_statics",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/statics",
+    tag = "points",
+    operation_id = "get_statics",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn statics(
     app: State<App>,
@@ -129,16 +122,13 @@ pub(crate) async fn statics(
 }
 
 /// Contacts of every node with the hole over the run
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/contacts",
-        tag = "points",
-        operation_id = "get_contacts",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/contacts",
+    tag = "points",
+    operation_id = "get_contacts",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn contacts(
     app: State<App>,
@@ -150,16 +140,13 @@ pub(crate) async fn contacts(
 }
 
 /// The energy ledger over the run
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/energy",
-        tag = "points",
-        operation_id = "get_energy",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/energy",
+    tag = "points",
+    operation_id = "get_energy",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn energy(
     app: State<App>,
@@ -171,16 +158,13 @@ pub(crate) async fn energy(
 }
 
 /// Motion over the whole of a run that ends once it has settled, at 20 Hz at most
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/course",
-        tag = "points",
-        operation_id = "get_course",
-        params(PointPath, TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/course",
+    tag = "points",
+    operation_id = "get_course",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn course(
     app: State<App>,
@@ -250,13 +234,13 @@ pub(super) async fn whole_file(
 }
 
 /// Which part of the recorded histories is wanted.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HistoryQuery {
     /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -272,18 +256,18 @@ pub(crate) struct HistoryQuery {
     to: Option<f64>,
     /// At most so many rows; which of them stay, `decimation` says. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     max_points: Option<u32>,
     /// Which rows stay of more than `max_points`. With `minmax` these are at least two for each column besides `time`.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     decimation: Decimation,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, what it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
 }
 
@@ -307,16 +291,13 @@ impl HistoryQuery {
 /// and where the string twists rotation speed \[rpm\] and torque at the bit, of the history or else of the snapshots; where neither has the
 /// bit, it says so and shows those of the lowest recorded node. Of a chosen node it shows what belongs to that node, and of `fields` these
 /// alone. The legend says at which depth and to which side. It shows 2,000,000 values at most.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/history",
-        tag = "points",
-        operation_id = "get_history",
-        params(PointPath, HistoryQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/history",
+    tag = "points",
+    operation_id = "get_history",
+    params(PointPath, HistoryQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn history(
     State(app): State<App>,
@@ -470,13 +451,13 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
 }
 
 /// Which part of one node's orbit is wanted.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OrbitQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -493,14 +474,14 @@ pub(crate) struct OrbitQuery {
     /// At most so many points, 4 or more; those with the extremes of u and v in each part of the window stay.
     /// Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 4))]
+    #[param(minimum = 4)]
     max_points: Option<u32>,
     /// Of a picture: whether the motion alone is shown, with the whole hole as an inset; absent means where the motion is below a
     /// tenth of the hole.
     #[serde(default, deserialize_with = "value::choice")]
     zoom: Option<bool>,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
 }
 
@@ -508,16 +489,13 @@ pub(crate) struct OrbitQuery {
 ///
 /// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
 /// `samples`, the number of samples in the window.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/orbit",
-        tag = "points",
-        operation_id = "get_orbit",
-        params(PointPath, OrbitQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/orbit",
+    tag = "points",
+    operation_id = "get_orbit",
+    params(PointPath, OrbitQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn orbit(
     State(app): State<App>,
@@ -555,13 +533,13 @@ pub(crate) async fn orbit(
 }
 
 /// Which full spectrum is wanted.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrumQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -577,18 +555,18 @@ pub(crate) struct SpectrumQuery {
     to: Option<f64>,
     /// Weighting of the samples in the window.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     window: spectrum::Weighting,
     /// Frequencies from minus to plus this \[Hz\] are shown.
     #[serde(default = "default_range", deserialize_with = "range")]
-    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0))]
+    #[param(default = 20.0, exclusive_minimum = 0.0)]
     range_hz: f64,
     /// At most so many of the highest peaks are listed.
     #[serde(default = "default_peaks", deserialize_with = "peaks")]
-    #[cfg_attr(feature = "openapi", param(default = 10))]
+    #[param(default = 10)]
     peaks: usize,
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
 }
 
@@ -617,16 +595,13 @@ fn peaks<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> 
 /// highest peaks with their whirl direction, frequency and amplitude interpolated between the bins. Lines outside the range enter
 /// neither. The attribute `resolved_hz` is the frequency up to which the run's steps resolve vibrations; each peak says whether it
 /// `is_resolved`, and a picture shades what lies beyond. Of a run that kept spectra only the window is one of its scenario's.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/spectrum",
-        tag = "points",
-        operation_id = "get_spectrum",
-        params(PointPath, SpectrumQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/spectrum",
+    tag = "points",
+    operation_id = "get_spectrum",
+    params(PointPath, SpectrumQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn spectrum(
     State(app): State<App>,

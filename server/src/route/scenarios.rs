@@ -12,7 +12,6 @@ use crate::answer::json::Json;
 use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
 /// Memory at most that reading a byte of a scenario file takes, and a whole one \[bytes\].
@@ -20,15 +19,12 @@ const MEMORY_OF_BYTE: usize = 100;
 const MEMORY_OF_FILE: usize = MEMORY_OF_BYTE * LIMITS.scenario_file_bytes;
 
 /// The preset scenarios
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/scenarios",
-        tag = "scenarios",
-        operation_id = "list_scenarios",
-        responses((status = 200, description = "Every preset", body = ScenarioList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/scenarios",
+    tag = "scenarios",
+    operation_id = "list_scenarios",
+    responses((status = 200, description = "Every preset", body = ScenarioList), Problems)
 )]
 pub(crate) async fn list() -> Json<ScenarioList> {
     Json(presets())
@@ -38,16 +34,13 @@ pub(crate) async fn list() -> Json<ScenarioList> {
 ///
 /// For forms: the text of a file as commands take it, TOML or JSON, answered with what it asks for as a request says it, what the file
 /// leaves out filled in. Nothing is stored, and whether it can be simulated is what a dry run of a sweep says.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/scenarios",
-        tag = "scenarios",
-        operation_id = "read_scenario",
-        request_body = ScenarioFile,
-        responses((status = 200, description = "The request of the file", body = ScenarioRequest), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/scenarios",
+    tag = "scenarios",
+    operation_id = "read_scenario",
+    request_body = ScenarioFile,
+    responses((status = 200, description = "The request of the file", body = ScenarioRequest), Problems)
 )]
 pub(crate) async fn read(
     State(app): State<App>,
@@ -64,16 +57,13 @@ pub(crate) async fn read(
 }
 
 /// One preset scenario in full
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/scenarios/{name}",
-        tag = "scenarios",
-        operation_id = "get_scenario",
-        params(("name" = String, Path, description = "Name of the preset", example = "paper-200m")),
-        responses((status = 200, description = "The preset", body = ScenarioDetail), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/scenarios/{name}",
+    tag = "scenarios",
+    operation_id = "get_scenario",
+    params(("name" = String, Path, description = "Name of the preset", example = "paper-200m")),
+    responses((status = 200, description = "The preset", body = ScenarioDetail), Problems)
 )]
 pub(crate) async fn show(Path(name): Path<String>) -> Result<Json<ScenarioDetail>> {
     match preset_detail(&name) {

@@ -17,7 +17,6 @@ use crate::answer::records;
 use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems};
 use crate::route::results::PointPath;
 
@@ -28,16 +27,13 @@ pub(crate) const MEMORY_OF_EQUILIBRIUM: usize = 16 << 20;
 ///
 /// As a dry run plans it: every effect with whether it takes part and why, the mesh, steps and processor times at each accuracy, and what
 /// the equilibrium shows.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/plan",
-        tag = "points",
-        operation_id = "get_plan",
-        params(PointPath, Conditional),
-        responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is right"), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/plan",
+    tag = "points",
+    operation_id = "get_plan",
+    params(PointPath, Conditional),
+    responses((status = 200, description = "The plan", body = Plan), (status = 304, description = "The copy is right"), Problems)
 )]
 pub(crate) async fn plan(
     State(app): State<App>,
@@ -58,13 +54,13 @@ pub(crate) async fn plan(
 }
 
 /// Which modes are wanted.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModesQuery {
     /// Modes up to this frequency \[Hz\].
     #[serde(default = "default_range", deserialize_with = "range")]
-    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0))]
+    #[param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0)]
     to_hz: f64,
 }
 
@@ -82,16 +78,13 @@ fn range<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
 ///
 /// Frequencies, growth, what moves most and where: of the equations of motion linearised about the equilibrium, its contacts closed and
 /// sliding. They say where lines of a spectrum may come from; the motion of a run, which lifts off and sticks, need not keep to them.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/modes",
-        tag = "points",
-        operation_id = "get_modes",
-        params(PointPath, ModesQuery, Conditional),
-        responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is right"), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/modes",
+    tag = "points",
+    operation_id = "get_modes",
+    params(PointPath, ModesQuery, Conditional),
+    responses((status = 200, description = "The modes, by frequency", body = Modes), (status = 304, description = "The copy is right"), Problems)
 )]
 pub(crate) async fn modes(
     State(app): State<App>,

@@ -14,7 +14,6 @@ use crate::answer::records::timestamp;
 use crate::app::App;
 use crate::guard::auth::{COOKIE, session_cookie, valid_token};
 use crate::listen::Peer;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
 /// The budget that all logins are taken from; no owner has this name.
@@ -23,16 +22,13 @@ const LOGINS: &str = "\0logins";
 /// Whether there is a session
 ///
 /// Everybody may ask. Without tokens there are no sessions, and none is needed.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/session",
-        tag = "service",
-        operation_id = "get_session",
-        security(()),
-        responses((status = 200, description = "The session of the request's cookie", body = Session), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/session",
+    tag = "service",
+    operation_id = "get_session",
+    security(()),
+    responses((status = 200, description = "The session of the request's cookie", body = Session), Problems)
 )]
 pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<impl IntoResponse> {
     let session = match session_cookie(&headers) {
@@ -47,17 +43,14 @@ pub(crate) async fn show(State(app): State<App>, headers: HeaderMap) -> Result<i
 ///
 /// For browsers: the answer sets a cookie that stands for the token from then on, until it expires after 30 days, or with the token, or
 /// is deleted. Programs send their token with each request instead.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/session",
-        tag = "service",
-        operation_id = "create_session",
-        security(()),
-        request_body = Login,
-        responses((status = 201, description = "The session", body = Session), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/session",
+    tag = "service",
+    operation_id = "create_session",
+    security(()),
+    request_body = Login,
+    responses((status = 201, description = "The session", body = Session), Problems)
 )]
 pub(crate) async fn open(
     State(app): State<App>,
@@ -78,16 +71,13 @@ pub(crate) async fn open(
 }
 
 /// Log out
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        delete,
-        path = "/v1/session",
-        tag = "service",
-        operation_id = "delete_session",
-        security(()),
-        responses((status = 204, description = "There is no session any more"), Problems)
-    )
+#[utoipa::path(
+    delete,
+    path = "/v1/session",
+    tag = "service",
+    operation_id = "delete_session",
+    security(()),
+    responses((status = 204, description = "There is no session any more"), Problems)
 )]
 pub(crate) async fn close(State(app): State<App>, headers: HeaderMap) -> Result<impl IntoResponse> {
     if let Some(secret) = session_cookie(&headers) {

@@ -13,13 +13,12 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{self, Answer, Format, TableFormat, Tag};
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name, whole_file};
 
 /// Which part of the snapshots is wanted.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SnapshotsQuery {
     /// Start of the window \[s\], included.
@@ -30,18 +29,18 @@ pub(crate) struct SnapshotsQuery {
     to: Option<f64>,
     /// Only this node, 1 at the top; absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// At most so many snapshots: every k-th one stays, with all its nodes. Absent means all.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     max_frames: Option<u32>,
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
 }
 
@@ -60,16 +59,13 @@ impl SnapshotsQuery {
 /// A row a node, from the top, snapshot after snapshot; kept where the scenario asks for them (`recording.snapshots`). There are no
 /// columns of motions that were not solved for. Attributes: `nodes`, the rows of a snapshot, 1 of one `node`; `snapshots`, the number of them in
 /// the window before `max_frames` thins them; `first`, the time of the first, and `interval`, from one that is served to the next \[s\].
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/snapshots",
-        tag = "points",
-        operation_id = "get_snapshots",
-        params(PointPath, SnapshotsQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/snapshots",
+    tag = "points",
+    operation_id = "get_snapshots",
+    params(PointPath, SnapshotsQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

@@ -13,18 +13,17 @@ use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{Answer, Format, TableFormat, Tag};
 use crate::answer::records;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
 /// Which spectrogram is wanted.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpectrogramQuery {
     /// A recorded node, 1 at the top; either this or `depth`.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -41,23 +40,23 @@ pub(crate) struct SpectrogramQuery {
     /// Length of each window \[s\]; absent means 4 s, and a quarter of the whole where that is shorter. Frequencies are resolved to 1
     /// over it.
     #[serde(default, deserialize_with = "length")]
-    #[cfg_attr(feature = "openapi", param(exclusive_minimum = 0.0))]
+    #[param(exclusive_minimum = 0.0)]
     window_s: Option<f64>,
     /// From the beginning of a window to that of the next \[s\]; absent means an eighth of a window, and more where that would be over
     /// 200 windows.
     #[serde(default, deserialize_with = "length")]
-    #[cfg_attr(feature = "openapi", param(exclusive_minimum = 0.0))]
+    #[param(exclusive_minimum = 0.0)]
     step_s: Option<f64>,
     /// Weighting of the samples in each window.
     #[serde(default = "hann")]
-    #[cfg_attr(feature = "openapi", param(inline, default = "hann"))]
+    #[param(inline, default = "hann")]
     window: spectrum::Weighting,
     /// Frequencies from minus to plus this \[Hz\] are shown.
     #[serde(default = "usual_range", deserialize_with = "range")]
-    #[cfg_attr(feature = "openapi", param(default = 20.0, exclusive_minimum = 0.0))]
+    #[param(default = 20.0, exclusive_minimum = 0.0)]
     range_hz: f64,
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<TableFormat>,
 }
 
@@ -86,16 +85,13 @@ fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
 /// ascending in frequency; positive frequencies are forward whirl, negative ones backward. The time is the middle of the window.
 /// Attributes: `node`, `measured_depth`, `windows`, `samples` of each, `window_s` and `step_s` as taken, `resolution` \[Hz\], `window`,
 /// and `resolved_hz`, the frequency up to which the run's steps resolve vibrations. It has 1,000,000 amplitudes at most.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/spectrogram",
-        tag = "points",
-        operation_id = "get_spectrogram",
-        params(PointPath, SpectrogramQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/spectrogram",
+    tag = "points",
+    operation_id = "get_spectrogram",
+    params(PointPath, SpectrogramQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

@@ -13,18 +13,17 @@ use crate::answer::error::Result;
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::{Answer, Format, TableFormat, Tag};
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::{PointPath, check_window, file_name};
 
 /// Which nodes and which window.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StatisticsQuery {
     /// A recorded node, 1 at the top; absent, like `depth`, means all of them.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1))]
+    #[param(minimum = 1)]
     node: Option<u32>,
     /// Measured depth \[m\] of a recorded node, to within half an element.
     #[serde(default, deserialize_with = "value::number")]
@@ -39,27 +38,24 @@ pub(crate) struct StatisticsQuery {
     #[serde(default, deserialize_with = "value::number")]
     to: Option<f64>,
     /// Format of the table; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<TableFormat>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
 }
 
 /// Statistics of orbits over a window
 ///
 /// One row a recorded node, from all samples of the half-open window, whatever is shown of them; the attribute `samples` is their number.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/points/{n}/statistics",
-        tag = "points",
-        operation_id = "get_statistics",
-        params(PointPath, StatisticsQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/statistics",
+    tag = "points",
+    operation_id = "get_statistics",
+    params(PointPath, StatisticsQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

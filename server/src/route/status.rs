@@ -12,22 +12,18 @@ use crate::answer::json::Json;
 use crate::answer::records::{read, timestamp};
 use crate::app::App;
 use crate::app::retention::RetentionConfig;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::Problems;
 
 /// Workers that have been silent for longer are not listed: five times the lease's renewal.
 pub(crate) const WORKER_SILENCE: Duration = Duration::from_secs(100);
 
 /// The worker processes
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/workers",
-        tag = "service",
-        operation_id = "list_workers",
-        responses((status = 200, description = "Workers with a recent heartbeat, oldest first", body = WorkerList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/workers",
+    tag = "service",
+    operation_id = "list_workers",
+    responses((status = 200, description = "Workers with a recent heartbeat, oldest first", body = WorkerList), Problems)
 )]
 pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> {
     let worker = |record: WorkerRecord| {
@@ -46,15 +42,12 @@ pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> 
 }
 
 /// The queue over all sweeps
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/queue",
-        tag = "service",
-        operation_id = "get_queue",
-        responses((status = 200, description = "How much is queued and how much is running", body = Queue), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/queue",
+    tag = "service",
+    operation_id = "get_queue",
+    responses((status = 200, description = "How much is queued and how much is running", body = Queue), Problems)
 )]
 pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     let depths = app.store.queue_depths().await?;
@@ -67,15 +60,12 @@ pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
 }
 
 /// How long data are kept, and when what need not be kept was deleted last
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/retention",
-        tag = "service",
-        operation_id = "get_retention",
-        responses((status = 200, description = "The ages and the last collection", body = Retention), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/retention",
+    tag = "service",
+    operation_id = "get_retention",
+    responses((status = 200, description = "The ages and the last collection", body = Retention), Problems)
 )]
 pub(crate) async fn retention(State(app): State<App>) -> Result<Json<Retention>> {
     const DAY_SECONDS: f64 = 86_400.0;
@@ -99,15 +89,12 @@ pub(crate) async fn retention(State(app): State<App>) -> Result<Json<Retention>>
 }
 
 /// The bounds of what the service accepts
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/limits",
-        tag = "service",
-        operation_id = "get_limits",
-        responses((status = 200, description = "The limits", body = Limits), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/limits",
+    tag = "service",
+    operation_id = "get_limits",
+    responses((status = 200, description = "The limits", body = Limits), Problems)
 )]
 pub(crate) async fn limits(State(app): State<App>) -> Json<Limits> {
     let owner = &app.config.owner_limits;

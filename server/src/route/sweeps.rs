@@ -39,7 +39,6 @@ use crate::app::expansions::{Memory, Work};
 use crate::guard::audit::Owner;
 use crate::guard::caller::Caller;
 use crate::guard::quota;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
 use crate::route::status::WORKER_SILENCE;
 use crate::route::verification::{Verified, memory_of_points};
@@ -51,8 +50,8 @@ const IDEMPOTENCY_KEY: &str = "idempotency-key";
 pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_secs(2);
 
 /// How a submission is meant.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SubmitQuery {
     /// True answers with the points that the request would become, and stores nothing.
@@ -60,13 +59,12 @@ pub(crate) struct SubmitQuery {
     dry_run: bool,
     /// Policy for points that were computed before, by anyone.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     cache: Cache,
 }
 
 /// Policy for points that were computed before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Cache {
     /// Their results are taken; the others are computed.
@@ -84,25 +82,22 @@ pub(crate) enum Cache {
 ///
 /// The points are the scenario at every combination of the axes' values, the first axis varying slowest.
 /// Everything that is wrong with the request or any of its points is reported at once.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps",
-        tag = "sweeps",
-        operation_id = "create_sweep",
-        request_body = SweepRequest,
-        params(
-            SubmitQuery,
-            ("Idempotency-Key" = Option<String>, Header, description = "A key of the client's choice, such as a UUID. \
-                The same request sent again with the same key is answered with the sweep that it made the first time."),
-        ),
-        responses(
-            (status = 201, description = "The sweep is stored and queued", body = Sweep,
-                headers(("Location" = String, description = "The sweep"))),
-            (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
-            Problems,
-        )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "create_sweep",
+    request_body = SweepRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "A key of the client's choice, such as a UUID. \
+            The same request sent again with the same key is answered with the sweep that it made the first time."),
+    ),
+    responses(
+        (status = 201, description = "The sweep is stored and queued", body = Sweep,
+            headers(("Location" = String, description = "The sweep"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
     )
 )]
 pub(crate) async fn create(
@@ -118,24 +113,21 @@ pub(crate) async fn create(
 /// Submit a single run
 ///
 /// A sweep of one point: the answer is that sweep, the result is at its point 1.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/runs",
-        tag = "sweeps",
-        operation_id = "create_run",
-        request_body = RunRequest,
-        params(
-            SubmitQuery,
-            ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
-        ),
-        responses(
-            (status = 201, description = "The run is stored and queued", body = Sweep,
-                headers(("Location" = String, description = "The sweep of one point"))),
-            (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
-            Problems,
-        )
+#[utoipa::path(
+    post,
+    path = "/v1/runs",
+    tag = "sweeps",
+    operation_id = "create_run",
+    request_body = RunRequest,
+    params(
+        SubmitQuery,
+        ("Idempotency-Key" = Option<String>, Header, description = "As for a sweep."),
+    ),
+    responses(
+        (status = 201, description = "The run is stored and queued", body = Sweep,
+            headers(("Location" = String, description = "The sweep of one point"))),
+        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        Problems,
     )
 )]
 pub(crate) async fn create_run(
@@ -330,21 +322,21 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>> {
 }
 
 /// Which sweeps are listed.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ListQuery {
     /// Entries in a page; absent means 50.
     #[serde(default, deserialize_with = "value::count")]
-    #[cfg_attr(feature = "openapi", param(minimum = 1, maximum = 500))]
+    #[param(minimum = 1, maximum = 500)]
     limit: Option<u32>,
     /// `next` of the page before.
-    #[cfg_attr(feature = "openapi", param(min_length = 1))]
+    #[param(min_length = 1)]
     cursor: Option<String>,
     /// Only sweeps of this owner.
     owner: Option<String>,
     /// Only sweeps in this state.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     state: Option<SweepState>,
     /// Only sweeps with this text in their name, in whatever case.
     name: Option<String>,
@@ -355,16 +347,13 @@ pub(crate) struct ListQuery {
 }
 
 /// The sweeps, newest first
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps",
-        tag = "sweeps",
-        operation_id = "list_sweeps",
-        params(ListQuery),
-        responses((status = 200, description = "A page of sweeps", body = SweepList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps",
+    tag = "sweeps",
+    operation_id = "list_sweeps",
+    params(ListQuery),
+    responses((status = 200, description = "A page of sweeps", body = SweepList), Problems)
 )]
 pub(crate) async fn list(State(app): State<App>, Query(query): Query<ListQuery>) -> Result<Json<SweepList>> {
     let limit = extract::page_size(query.limit)?;
@@ -424,23 +413,22 @@ async fn with_findings(app: &App, mut sweep: Sweep) -> Result<Sweep> {
 }
 
 /// Whether and for what a request waits.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ShowQuery {
     /// Waits so long, at most 60 s, before it answers: `30s`, `500ms`, or seconds as a number.
     #[serde(default, deserialize_with = "value::span")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>, example = "30s"))]
+    #[param(value_type = Option<String>, example = "30s")]
     wait: Option<Duration>,
     /// Condition that ends the wait early.
     #[serde(default)]
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     until: Until,
 }
 
 /// Condition that a long poll waits for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Until {
     /// Any change of state, counts or progress, or of the worker that queued points wait for.
@@ -454,19 +442,16 @@ pub(crate) enum Until {
 ///
 /// With `wait` the answer is held back until something changes, so that a script needs no polling loop of
 /// its own. A sweep whose points are all final is answered at once.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "get_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
-        responses(
-            (status = 200, description = "The sweep in its present state", body = Sweep,
-                headers(("ETag" = String, description = "Of this answer; `If-Match` takes it as the sweep's revision"))),
-            Problems
-        )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "get_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep"), ShowQuery),
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "Of this answer; `If-Match` takes it as the sweep's revision"))),
+        Problems
     )
 )]
 pub(crate) async fn show(
@@ -523,16 +508,13 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
 ///
 /// Queued points are cancelled at once, running ones within a heartbeat of their worker, and so are the reference runs that
 /// verify some. What another sweep wants too goes on for that sweep. Cancelling again changes nothing.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/cancel",
-        tag = "sweeps",
-        operation_id = "cancel_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/cancel",
+    tag = "sweeps",
+    operation_id = "cancel_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     let (store, cancelled) = (app.store.clone(), id.clone());
@@ -541,16 +523,13 @@ pub(crate) async fn cancel(State(app): State<App>, Path(id): Path<String>) -> Re
 }
 
 /// Retry the failed and cancelled points of a sweep, and reference runs that verify some
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/retry",
-        tag = "sweeps",
-        operation_id = "retry_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/retry",
+    tag = "sweeps",
+    operation_id = "retry_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.retry_sweep(&id).await?;
@@ -561,16 +540,13 @@ pub(crate) async fn retry(State(app): State<App>, Path(id): Path<String>) -> Res
 ///
 /// Its queued points are not started any more, but for those that another sweep wants; running ones continue to their end.
 /// Pausing again changes nothing.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/pause",
-        tag = "sweeps",
-        operation_id = "pause_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/pause",
+    tag = "sweeps",
+    operation_id = "pause_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, true).await?;
@@ -578,16 +554,13 @@ pub(crate) async fn pause(State(app): State<App>, Path(id): Path<String>) -> Res
 }
 
 /// Let a paused sweep go on
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/resume",
-        tag = "sweeps",
-        operation_id = "resume_sweep",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/resume",
+    tag = "sweeps",
+    operation_id = "resume_sweep",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The sweep in its present state", body = Sweep), Problems)
 )]
 pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Result<Json<Sweep>> {
     app.store.pause_sweep(&id, false).await?;
@@ -598,23 +571,20 @@ pub(crate) async fn resume(State(app): State<App>, Path(id): Path<String>) -> Re
 ///
 /// Absent fields stay as they are. A new priority holds for the points that wait, too. With `If-Match` nothing is changed of a sweep that
 /// somebody else has changed meanwhile (412); that its points have gone on does not count.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        patch,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "change_sweep",
-        params(
-            ("id" = String, Path, description = "Identifier of the sweep"),
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
-        ),
-        request_body = SweepPatch,
-        responses(
-            (status = 200, description = "The sweep in its present state", body = Sweep,
-                headers(("ETag" = String, description = "As of a sweep that is read"))),
-            Problems
-        )
+#[utoipa::path(
+    patch,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "change_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
+    request_body = SweepPatch,
+    responses(
+        (status = 200, description = "The sweep in its present state", body = Sweep,
+            headers(("ETag" = String, description = "As of a sweep that is read"))),
+        Problems
     )
 )]
 pub(crate) async fn change(
@@ -658,8 +628,8 @@ fn already_past(expires: Timestamp, now: Timestamp) -> Error {
 }
 
 /// Whether a deletion is meant.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DeleteQuery {
     /// True answers with what would be deleted, and deletes nothing.
@@ -671,20 +641,17 @@ pub(crate) struct DeleteQuery {
 ///
 /// Its points, events and requests are gone at once; results that no other sweep has go with the next collection, and so do their
 /// tables. A sweep that is pinned, or has points that are not final, is not deleted (409).
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        delete,
-        path = "/v1/sweeps/{id}",
-        tag = "sweeps",
-        operation_id = "delete_sweep",
-        params(
-            ("id" = String, Path, description = "Identifier of the sweep"),
-            DeleteQuery,
-            ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
-        ),
-        responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
-    )
+#[utoipa::path(
+    delete,
+    path = "/v1/sweeps/{id}",
+    tag = "sweeps",
+    operation_id = "delete_sweep",
+    params(
+        ("id" = String, Path, description = "Identifier of the sweep"),
+        DeleteQuery,
+        ("If-Match" = Option<String>, Header, description = "The `ETag` of the sweep as it was read."),
+    ),
+    responses((status = 200, description = "The deletion that is made, or would be", body = SweepDeletion), Problems)
 )]
 pub(crate) async fn delete(
     State(app): State<App>,
@@ -714,17 +681,14 @@ pub(crate) async fn delete(
 /// Points of the sweep's scenario with other values of its parameters, by any design; their numbers go on from its last
 /// point. Points that the sweep has already are skipped, so that a finer grid may be asked for as a whole, and the same
 /// request again changes nothing. Of the added points as many are verified as make up the `verify` of the whole sweep.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        post,
-        path = "/v1/sweeps/{id}/points",
-        tag = "sweeps",
-        operation_id = "append_points",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        request_body = AppendRequest,
-        responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
-    )
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/points",
+    tag = "sweeps",
+    operation_id = "append_points",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    request_body = AppendRequest,
+    responses((status = 200, description = "The sweep with the new points", body = Sweep), Problems)
 )]
 pub(crate) async fn append(
     State(app): State<App>,
@@ -802,31 +766,30 @@ pub(crate) async fn append(
 }
 
 /// How the table of a sweep is served.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams), into_params(parameter_in = Query))]
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SweepTableQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     format: Option<PictureFormat>,
     /// Only these columns, separated by commas; of a picture, what it shows.
     #[serde(default, deserialize_with = "value::names")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
     /// Of a map: how the values of its parameters are placed; absent means `even`.
-    #[cfg_attr(feature = "openapi", param(inline))]
+    #[param(inline)]
     spacing: Option<MapSpacing>,
     /// Of a picture: parameters that it holds, each with one of its values in the units of the table, separated by commas:
     /// `mud.density:1200,operation.weight_on_bit:-50000`. Of the others a map is over the first two; further ones are held at the
     /// first value that they have. The picture says at which.
     #[serde(default, deserialize_with = "value::assignments")]
-    #[cfg_attr(feature = "openapi", param(value_type = Option<String>))]
+    #[param(value_type = Option<String>)]
     slice: Option<Vec<(String, f64)>>,
 }
 
 /// How a map places the values of a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum MapSpacing {
     /// At equal distances, whatever the values.
@@ -852,16 +815,13 @@ impl From<MapSpacing> for chart::Spacing {
 /// accuracy promises, the attribute `warnings` says so. A picture shows the columns in `fields` over the parameters that vary: lines
 /// over one of them, a map of the first column over two, with diamonds at verified points; with more, a slice. Words, such as `state`
 /// and `stable`, have a colour each. A column of a node is shown with its depth, where that is the same in all of the sweep.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/table",
-        tag = "sweeps",
-        operation_id = "get_sweep_table",
-        params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
-        responses(PictureResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table",
+    tag = "sweeps",
+    operation_id = "get_sweep_table",
+    params(("id" = String, Path, description = "Identifier of the sweep"), SweepTableQuery, Conditional),
+    responses(PictureResponse, Problems)
 )]
 pub(crate) async fn table(
     State(app): State<App>,
@@ -939,16 +899,13 @@ fn moves_nodes(parameter: &str) -> bool {
 /// The columns of the table of a sweep, without their values
 ///
 /// In their order, with kinds and units: those of the points as they are now. What a name stands for says `GET /v1/quantities`.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/table/columns",
-        tag = "sweeps",
-        operation_id = "list_sweep_table_columns",
-        params(("id" = String, Path, description = "Identifier of the sweep")),
-        responses((status = 200, description = "The columns", body = ColumnList), Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/table/columns",
+    tag = "sweeps",
+    operation_id = "list_sweep_table_columns",
+    params(("id" = String, Path, description = "Identifier of the sweep")),
+    responses((status = 200, description = "The columns", body = ColumnList), Problems)
 )]
 pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> Result<Json<ColumnList>> {
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };

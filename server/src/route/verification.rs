@@ -17,7 +17,6 @@ use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Format};
 use crate::answer::records;
 use crate::app::App;
-#[cfg(feature = "openapi")]
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::TableQuery;
 
@@ -107,16 +106,13 @@ impl Verified {
 /// the reference, of frequencies in Hz. The attribute `statistics` sums them up by NAME: how many points are `verified`, the `mean`
 /// bias with its 95 % `interval`, the `largest` with the point that has it (`largest_at`), and what the sweep's accuracy has
 /// `promised`, with the number of points `exceeding` it; `warnings` reports the latter in words. A sweep that verifies nothing has no rows.
-#[cfg_attr(
-    feature = "openapi",
-    utoipa::path(
-        get,
-        path = "/v1/sweeps/{id}/verification",
-        tag = "sweeps",
-        operation_id = "get_sweep_verification",
-        params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery, Conditional),
-        responses(TableResponse, Problems)
-    )
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/verification",
+    tag = "sweeps",
+    operation_id = "get_sweep_verification",
+    params(("id" = String, Path, description = "Identifier of the sweep"), TableQuery, Conditional),
+    responses(TableResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,

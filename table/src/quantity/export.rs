@@ -9,8 +9,7 @@ use super::definition::Quantity;
 use super::units::{self, Unit};
 
 /// Meaning of a name: a column without its node and spectrum window, or a field of a scenario by its path without indices.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct QuantityEntry {
     /// Its name in pictures.
     pub label: &'static str,
@@ -35,8 +34,7 @@ pub struct QuantityEntry {
 }
 
 /// A unit beside the one in which a quantity is served.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct UnitEntry {
     /// How it is written, such as `mm`.
     pub unit: &'static str,

@@ -10,8 +10,7 @@ use crate::term::{LateralWave, Scene};
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// One effect of a scenario, decided.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct EffectDecision {
     /// The effect.
     pub effect: Effect,

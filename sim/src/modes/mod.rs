@@ -57,8 +57,7 @@ impl Default for ModeSearch {
 }
 
 /// The modes of a band.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Modes {
     /// The modes, by frequency.
     pub modes: Vec<Mode>,
@@ -73,8 +72,7 @@ pub struct Modes {
 
 /// Whether all eigenvalues that were looked for were found, by their number: the winding number of the pencil's determinant along the
 /// edge of the band, for decay below the rate of the answer and growth below twice the band's highest circular frequency.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Completeness {
     /// As many were found as there are.
@@ -99,8 +97,7 @@ impl fmt::Display for Completeness {
 }
 
 /// One mode: `x(t) = Re(shape exp((growth_rate + 2 pi i frequency) t))`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Mode {
     /// Frequency \[Hz\]; 0 is a static instability.
     pub frequency_hz: f64,
@@ -125,8 +122,7 @@ pub struct Mode {
 }
 
 /// Main motion of a mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ModeKind {
     /// Lateral, whirling with the rotation.

@@ -27,8 +27,7 @@ const NEUTRAL: f64 = 1e-6;
 const EXPLAINING_GROWTH: f64 = 3.0;
 
 /// The verdict of the linearised equations about the equilibrium, contacts closed, on frequencies up to `complete_to_hz`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Stability {
     /// Whether all modes decay; absent where none was found to grow and not all are known to have been found.
     pub stable: Option<bool>,
@@ -41,8 +40,7 @@ pub struct Stability {
 }
 
 /// The mode that grows fastest, and what feeds it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Instability {
     /// Its kind.
     pub kind: InstabilityKind,
@@ -59,8 +57,7 @@ pub struct Instability {
 }
 
 /// Kinds of instability, by what puts energy into the mode and how it moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InstabilityKind {
     /// Compression pushes the string aside.

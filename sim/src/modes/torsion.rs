@@ -32,8 +32,7 @@ const MESH_END: f64 = 0.75;
 const STEPS_OF_A_PERIOD: f64 = 20.0;
 
 /// The torsional modes that velocity-weakening friction feeds, to first order in damping.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct UndampedTorsion {
     /// Torsional modes of the mesh.
     pub modes: usize,

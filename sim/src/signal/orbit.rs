@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::window::Window;
 
 /// Where an orbit lies and how large it is \[m\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct OrbitStatistics {
     /// Mean u.
     pub mean_u: f64,

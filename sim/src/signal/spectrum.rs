@@ -9,8 +9,7 @@ use super::fft;
 use super::window::Window;
 
 /// The full spectrum of an orbit: one amplitude for every frequency, negative for backward whirl.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct FullSpectrum {
     /// Distance of two neighbouring frequencies \[Hz\].
     pub resolution_hz: f64,
@@ -23,8 +22,7 @@ pub struct FullSpectrum {
 }
 
 /// One line of a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Peak {
     /// Frequency \[Hz\], interpolated between the bins.
     pub frequency_hz: f64,
@@ -35,8 +33,7 @@ pub struct Peak {
 }
 
 /// Sense of a line's motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Whirl {
     /// In the sense of the string's rotation.

@@ -12,8 +12,7 @@ use crate::study::summary::{OrbitSummary, TransientSummary};
 use crate::transient::{DISTURBANCE, MotionRegime};
 
 /// Errors of a result, relative to the statistics of the recorded orbits, the worst node each.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ResultErrors {
     /// Of the steps.
     pub time: TimeError,
@@ -44,8 +43,7 @@ pub struct ResultErrors {
 /// Each step leaves an error, which the embedded method estimates, and the scene amplifies it until the end of the run as it amplifies any
 /// other disturbance. The amplification is measured by the distance from a twin that starts a micrometre away at the start of the orbit window,
 /// or from the members of an ensemble. Scenarios differ in it by three orders of magnitude, so an estimate without either is conditional.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum TimeError {
     /// Estimated with what a twin or an ensemble shows of the scenario.
@@ -70,8 +68,7 @@ pub enum TimeError {
 }
 
 /// The error of orbit size by the window of the statistics.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum SamplingError {
     /// Largest relative difference between the windows that agree of regular motion, half width of the confidence interval of irregular.
@@ -87,8 +84,7 @@ pub enum SamplingError {
 }
 
 /// How far runs of the same scenario differ whose starts differ by [`DISTURBANCE`]: a property of the scene, which no step makes smaller.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum SpreadError {
     /// Measured on an ensemble.

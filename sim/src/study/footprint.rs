@@ -43,8 +43,7 @@ const BIT_COLUMNS: u64 = 2;
 const COURSE_TABLE_HZ: f64 = 20.0;
 
 /// Memory and storage of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Footprint {
     /// Memory that the point takes at most, about \[bytes\], of a cost study for each core that its worker uses; the worker's program
     /// itself takes some 30 MB more.

@@ -27,8 +27,7 @@ const LARGEST_ORBIT_ERROR: f64 = 0.5;
 pub(super) const MOST_ELEMENTS: usize = 1500;
 
 /// The mesh's part of the error of the equilibrium.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum MeshEstimate {
     /// Estimated from meshes two and four times as fine.
@@ -41,8 +40,7 @@ pub enum MeshEstimate {
 }
 
 /// Estimated errors of an equilibrium for its mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshErrors {
     /// Static distance from the hole's axis, the largest relative error of the recorded nodes; absent where they lie on the axis or none
     /// is recorded.

@@ -19,8 +19,7 @@ use crate::study::summary::StaticsSummary;
 use crate::transient::{longest_step, resolved_hz, shortest_run, step_count, torsion_step, twin_time};
 
 /// The plan of a scenario.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Plan {
     /// Every effect, whether it takes part and why.
     pub effects: Vec<EffectDecision>,
@@ -66,8 +65,7 @@ pub struct Plan {
 }
 
 /// Size and cost of one accuracy.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedAccuracy {
     /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
     pub name: String,
@@ -90,8 +88,7 @@ pub struct PlannedAccuracy {
 }
 
 /// Runs and cost of a cost study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedStudy {
     /// Runs of all methods, steps and meshes, by all members.
     pub runs: u64,
@@ -105,8 +102,7 @@ pub struct PlannedStudy {
 }
 
 /// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,

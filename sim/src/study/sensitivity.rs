@@ -19,8 +19,7 @@ use crate::transient::{
 };
 
 /// Distance from the run of a twin that starts [`DISTURBANCE`] away.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Sensitivity {
     /// From where the twin starts to where it ends \[s\].
     pub window: TimeWindow,

@@ -13,8 +13,7 @@ use crate::linalg::{Four, Lane, NodalField};
 /// much of that sum is left in the motion is calibrated once a method against converged runs. It
 /// is an estimate for the *history*. Once impacts have made histories part from each other, no step makes it true, and
 /// only statistics mean something: ensembles tell when that is.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ErrorEstimate {
     /// Root mean square over all nodes of the error of a lateral displacement at the end of the run \[m\].
     pub displacement: f64,

@@ -62,8 +62,7 @@ pub struct Settling {
 }
 
 /// Kind of motion over the window of a run's statistics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionRegime {
     /// Settled: statistics of consecutive windows agree.

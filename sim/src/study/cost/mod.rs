@@ -31,8 +31,7 @@ use crate::statics::StaticsError;
 use crate::transient::{MotionRegime, TransientError};
 
 /// Quantity of a run that a study compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Root mean square distance from the mean position, of each recorded node over the orbit window.
@@ -101,8 +100,7 @@ impl Quantity {
 }
 
 /// The outcome of a study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostReport {
     /// Name of the scenario.
     pub scenario: String,
@@ -174,8 +172,7 @@ impl CostReport {
 }
 
 /// How far the two methods of a reference agree in one quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Agreement {
     /// The quantity.
     pub quantity: Quantity,
@@ -193,8 +190,7 @@ pub struct Agreement {
 }
 
 /// How far the two methods of a reference agree at one node.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeAgreement {
     /// Measured depth of the node \[m\]; absent where the value is the whole string's.
     pub measured_depth: Option<f64>,
@@ -221,8 +217,7 @@ impl Agreement {
 }
 
 /// One line of a study against its reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostRow {
     /// `draft`, `standard` or `reference` for these accuracies, `A` and `B` for the two methods whose agreement makes the
     /// study's reference, and the integrator's name for all others.
@@ -263,8 +258,7 @@ pub struct CostRow {
 }
 
 /// Errors of a line against the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostErrors {
     /// Orbit size; absent where there is no reference for it at any node, as in all that follow.
     pub orbit_size: Option<StatisticError>,
@@ -306,8 +300,7 @@ impl CostErrors {
 }
 
 /// The error of a statistic at the worst recorded node, where bias and half the interval's width together are largest.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct StatisticError {
     /// Mean of the members less the reference, relative to the reference.
     pub bias: f64,
@@ -331,8 +324,7 @@ impl StatisticError {
 }
 
 /// A statistic of one recorded node, or of the whole string, against the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeStatistic {
     /// Measured depth of the node \[m\]; absent where the statistic is the whole string's.
     pub measured_depth: Option<f64>,
@@ -357,8 +349,7 @@ impl NodeStatistic {
 }
 
 /// Lines of the members' mean spectra against those of the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct LineErrors {
     /// Largest distance of a line from the reference's \[Hz\], of those that are there; absent where none is.
     pub frequency_hz: Option<f64>,
@@ -374,8 +365,7 @@ pub struct LineErrors {
 }
 
 /// One of the reference's lines.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NamedLine {
     /// Measured depth of the node \[m\].
     pub measured_depth: f64,
@@ -390,8 +380,7 @@ pub struct NamedLine {
 }
 
 /// A line that the reference does not have.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct SpuriousLine {
     /// Measured depth of the node \[m\].
     pub measured_depth: f64,
@@ -402,8 +391,7 @@ pub struct SpuriousLine {
 }
 
 /// The cheapest way to some accuracy of a quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Recommendation {
     /// The quantity.
     pub quantity: Quantity,

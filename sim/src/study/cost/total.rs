@@ -29,8 +29,7 @@ pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
 }
 
 /// The cheapest mesh, method and tolerance for a whole error of orbit size.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct TotalCost {
     /// Wanted relative error of orbit size over the orbit window, mesh and time together.
     pub wanted: f64,
@@ -47,8 +46,7 @@ pub struct TotalCost {
 }
 
 /// Limit of the orbit size of one node as the mesh gets finer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshLimit {
     /// Measured depth of the node \[m\].
     pub measured_depth: Option<f64>,
@@ -60,8 +58,7 @@ pub struct MeshLimit {
 }
 
 /// Error of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshPart {
     /// Factor on the mesh's target element lengths.
     pub mesh_factor: f64,
@@ -75,8 +72,7 @@ pub struct MeshPart {
 }
 
 /// A mesh with a method, and what to expect of them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct TotalChoice {
     /// Factor on the mesh's target element lengths.
     pub mesh_factor: f64,
@@ -103,8 +99,7 @@ pub struct TotalChoice {
 }
 
 /// Obstacle to the wanted whole error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StoppedBy {
     /// Every mesh is off by more.

@@ -24,7 +24,6 @@ mod simulate;
 mod soak;
 mod submit;
 mod sweeps;
-#[cfg(feature = "opentelemetry")]
 mod telemetry;
 mod text;
 mod token;
@@ -125,7 +124,6 @@ enum Command {
     },
 }
 
-#[cfg(feature = "opentelemetry")]
 impl Command {
     /// Name of its traces; none for commands that run for a moment only.
     fn service(&self) -> Option<&'static str> {
@@ -192,9 +190,7 @@ fn run() -> anyhow::Result<()> {
     };
     let log = log.with_filter(log_filter()?);
     let registry = tracing_subscriber::registry().with(log);
-    #[cfg(feature = "opentelemetry")]
     let telemetry = telemetry::Telemetry::new(arguments.command.service())?;
-    #[cfg(feature = "opentelemetry")]
     let registry = registry.with(telemetry.layer());
     registry.init();
     match arguments.command {

@@ -190,7 +190,10 @@ fn no_module_imports_itself_by_way_of_others() {
     for folder in WITHOUT_CIRCLES {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder).join("src");
         let imported = imported_modules(&root);
-        assert!(imported.contains_key("lib"), "the sources of {folder} were not found");
+        assert!(
+            imported.contains_key("lib") || imported.contains_key("main"),
+            "the sources of {folder} were not found"
+        );
         let circles = importing_themselves(&imported);
         assert!(circles.is_empty(), "modules of {folder} that import each other are among {circles:?}");
     }

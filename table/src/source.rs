@@ -7,7 +7,7 @@ use std::iter::once;
 use crate::error::TableError;
 use crate::table::Table;
 
-/// Where a table goes as it is written. Not a type parameter: the code of the formats would be compiled once more for each sink.
+/// Destination of a table as it is written.
 pub type Sink<'s> = dyn Write + Send + 's;
 
 /// A table in pieces: what a format is written from.

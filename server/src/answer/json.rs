@@ -6,8 +6,7 @@ use serde::Serialize;
 
 use crate::answer::error::Error;
 
-/// A JSON answer. Not axum's, which writes into a buffer of its own kind: each type of an answer would be compiled for that buffer, for
-/// that of event streams, and for the plain bytes that tags are made of.
+/// A JSON answer. Unlike axum's, it reports a value that cannot be written as a problem document.
 pub(crate) struct Json<T>(pub(crate) T);
 
 impl<T: Serialize> IntoResponse for Json<T> {

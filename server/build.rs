@@ -1,4 +1,4 @@
-//! Compresses what the program holds: the files of the web page, as they are sent, and the OpenAPI document.
+//! Compresses the files of the web page, which are sent so.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -14,10 +14,7 @@ const SERVED: [&str; 4] = ["html", "css", "js", "svg"];
 /// Folders of the page that are for developers alone.
 const UNSERVED: [&str; 2] = ["node_modules", "tests"];
 
-const OPENAPI: &str = "../api/openapi.json";
-
 fn main() -> io::Result<()> {
-    println!("cargo::rerun-if-changed={OPENAPI}");
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?);
     let mut paths = Vec::new();
     collect(Path::new("web"), &mut paths)?;
@@ -40,8 +37,7 @@ fn main() -> io::Result<()> {
         .map_err(io::Error::other)?;
     }
     list.push_str("]\n");
-    fs::write(out.join("web.rs"), list)?;
-    fs::write(out.join("openapi.json.gz"), compress(&fs::read(OPENAPI)?)?)
+    fs::write(out.join("web.rs"), list)
 }
 
 fn compress(bytes: &[u8]) -> io::Result<Vec<u8>> {

@@ -1,10 +1,6 @@
 //! Scenarios as TOML and JSON.
-//!
-//! Every format is erased (`erased_serde`) before a scenario is read or written, so that the code for each of its types is compiled once, in
-//! this crate. Compiled for each format it would be a part of all crates whose types hold scenarios.
 
-use serde::de::{DeserializeOwned, Deserializer, Error as _, IgnoredAny};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::de::{DeserializeOwned, Deserializer, IgnoredAny};
 
 use crate::strict::Strict;
 use crate::{Problem, Scenario};
@@ -47,36 +43,6 @@ impl Scenario {
     pub(super) fn to_value(&self) -> serde_json::Value {
         serde_json::to_value(self).expect("a scenario has only string keys")
     }
-
-    fn fields(&self) -> Box<dyn erased_serde::Serialize + '_> {
-        Box::new(Fields(self))
-    }
-
-    fn from_fields(format: &mut dyn erased_serde::Deserializer<'_>) -> Result<Self, erased_serde::Error> {
-        // The function that serde derives, not the trait's.
-        Scenario::deserialize(format)
-    }
-}
-
-impl Serialize for Scenario {
-    fn serialize<S: Serializer>(&self, format: S) -> Result<S::Ok, S::Error> {
-        erased_serde::serialize(&*self.fields(), format)
-    }
-}
-
-impl<'de> Deserialize<'de> for Scenario {
-    fn deserialize<D: Deserializer<'de>>(format: D) -> Result<Self, D::Error> {
-        Self::from_fields(&mut <dyn erased_serde::Deserializer<'_>>::erase(format)).map_err(D::Error::custom)
-    }
-}
-
-/// A scenario as serde's derived function writes it.
-struct Fields<'s>(&'s Scenario);
-
-impl Serialize for Fields<'_> {
-    fn serialize<S: Serializer>(&self, format: S) -> Result<S::Ok, S::Error> {
-        Scenario::serialize(self.0, format)
-    }
 }
 
 /// A TOML document as a tree, or why the text is not TOML at all.
@@ -103,8 +69,7 @@ pub(super) fn not_json(error: &serde_json::Error) -> Problem {
 fn read<'de, T: DeserializeOwned>(format: impl Deserializer<'de>) -> Result<T, Problem> {
     let mut track = serde_path_to_error::Track::new();
     let tracked = serde_path_to_error::Deserializer::new(format, &mut track);
-    let read = erased_serde::deserialize(&mut <dyn erased_serde::Deserializer<'_>>::erase(Strict(tracked)));
-    read.map_err(|error| {
+    T::deserialize(Strict(tracked)).map_err(|error| {
         let message = error.to_string();
         Problem::from_serde(track.path().to_string(), without_place(&message))
     })

@@ -42,8 +42,7 @@ use serde::{Deserialize, Serialize};
 
 /// The complete description of one simulated point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-// Its traits of serde are in format.rs.
-#[serde(remote = "Self", deny_unknown_fields)]
+#[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// A name for people; it does not enter the numbers. Empty unless given.
     #[serde(default)]

@@ -20,6 +20,5 @@ pub use app::limit::OwnerLimits;
 pub use app::retention::RetentionConfig;
 pub use exposition::Exposition;
 pub use listen::ConnectionLimits;
-pub use openapi::openapi_of_annotations;
 pub use router::{OPENAPI_JSON, router};
 pub use serve::{DEFAULT_ADDRESS, Listeners, ServeError, serve};

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use drillsweep_api::PHYSICS_VERSION;
 use drillsweep_store::{Store, StoreError, TokensPresent};
-use futures::future::BoxFuture;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tokio::time::{Instant, MissedTickBehavior};
@@ -68,30 +67,11 @@ pub enum ServeError {
 /// # Errors
 /// When a listener fails, when others could reach the service though no valid token exists, or when requests do not
 /// end within [`Config::drain_timeout`].
-pub fn serve(
+pub async fn serve(
     listeners: Listeners,
     store: Store,
     config: Config,
     shutdown: impl Future<Output = ()> + Send + 'static,
-) -> BoxFuture<'static, Result<(), ServeError>> {
-    serve_boxed(listeners, store, config, Box::pin(shutdown))
-}
-
-/// [`serve`] without type parameters, so that the service is compiled with this crate and not with its callers.
-fn serve_boxed(
-    listeners: Listeners,
-    store: Store,
-    config: Config,
-    shutdown: BoxFuture<'static, ()>,
-) -> BoxFuture<'static, Result<(), ServeError>> {
-    Box::pin(serve_until_drained(listeners, store, config, shutdown))
-}
-
-async fn serve_until_drained(
-    listeners: Listeners,
-    store: Store,
-    config: Config,
-    shutdown: BoxFuture<'static, ()>,
 ) -> Result<(), ServeError> {
     listeners.check(&store).await?;
     let address = listeners.api.local_addr().map_err(ServeError::Listener)?;

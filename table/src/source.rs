@@ -7,7 +7,7 @@ use std::iter::once;
 use crate::error::TableError;
 use crate::table::Table;
 
-/// Destination of a written table. Not a type parameter: the code of the formats would be compiled once more for each sink.
+/// Destination of a written table.
 pub type Sink<'s> = dyn Write + Send + 's;
 
 /// A table in pieces, from which formats are written.

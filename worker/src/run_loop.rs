@@ -2,7 +2,6 @@
 
 use std::any::Any;
 use std::path::{Path, PathBuf};
-use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -133,15 +132,7 @@ enum Halt {
 /// # Errors
 /// The store cannot be opened or the heartbeat cannot be started. Later failures of the store are logged and
 /// tried again.
-pub fn run(
-    config: WorkerConfig,
-    stop: watch::Receiver<bool>,
-) -> Pin<Box<dyn Future<Output = Result<(), WorkerError>> + Send>> {
-    // Boxed, so that what it calls is compiled with this crate, and not again in each that calls it.
-    Box::pin(work(config, stop))
-}
-
-async fn work(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), WorkerError> {
+pub async fn run(config: WorkerConfig, stop: watch::Receiver<bool>) -> Result<(), WorkerError> {
     let mut stop = match config.max_runtime {
         Some(time) => stop_after(time, stop),
         None => stop,

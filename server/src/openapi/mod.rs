@@ -1,4 +1,4 @@
-//! The OpenAPI document from the annotations of routes and types. The served document is the committed one, which a test compares.
+//! The OpenAPI document: description of the service as a whole, and the additions that annotations of routes and types cannot express.
 
 pub(crate) mod answers;
 mod vocabulary;
@@ -6,17 +6,18 @@ mod vocabulary;
 use drillsweep_api::{ExportManifest, LIMITS, PointEvent, PointList, ProblemDetails, SelectedPointList};
 use drillsweep_table::Table;
 use serde_json::{Value, json};
+use utoipa::openapi::OpenApi;
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityScheme};
-use utoipa::{Modify, OpenApi};
+use utoipa::{Modify, OpenApi as _};
 
-use crate::route::{
-    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
-    snapshots, spectrogram, statistics, status, sweeps, verification,
-};
+/// The document without routes.
+pub(crate) fn service() -> OpenApi {
+    Document::openapi()
+}
 
-/// Text of the committed document: indented JSON with a final newline.
-pub fn openapi_of_annotations() -> String {
-    let mut document = json!(Document::openapi());
+/// The document as indented JSON with a final newline.
+pub(crate) fn json(document: &OpenApi) -> String {
+    let mut document = json!(document);
     vocabulary::describe(&mut document);
     bound_members(&mut document);
     format!("{document:#}\n")
@@ -37,8 +38,8 @@ fn bound_members(document: &mut Value) {
     }
 }
 
-/// The document: the service as a whole, and its annotated routes and types.
-#[derive(OpenApi)]
+/// Description of the service as a whole, and the types that no route names.
+#[derive(utoipa::OpenApi)]
 #[openapi(
     info(
         title = "drillsweep",
@@ -46,57 +47,6 @@ fn bound_members(document: &mut Value) {
         description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
             SI units throughout; a field in another unit says so in its name.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
-    ),
-    paths(
-        sweeps::submit::create,
-        sweeps::list::list,
-        sweeps::show::show,
-        sweeps::change::change,
-        sweeps::change::delete,
-        sweeps::change::cancel,
-        sweeps::change::retry,
-        sweeps::change::pause,
-        sweeps::change::resume,
-        sweeps::table::table,
-        sweeps::table::columns,
-        verification::show,
-        events::follow,
-        export::export,
-        sweeps::submit::create_run,
-        points::list,
-        sweeps::append::append,
-        points::show,
-        points::failures,
-        files::list,
-        files::show,
-        results::profile,
-        results::statics,
-        results::history,
-        snapshots::show,
-        results::orbit,
-        results::spectrum,
-        spectrogram::show,
-        results::contacts,
-        results::energy,
-        results::course,
-        statistics::show,
-        analysis::plan,
-        analysis::modes,
-        cost::show,
-        scenarios::list,
-        scenarios::read,
-        scenarios::show,
-        quantities::list,
-        status::workers,
-        status::queue,
-        status::limits,
-        status::retention,
-        session::show,
-        session::open,
-        session::close,
-        crate::router::show,
-        health::alive,
-        health::ready,
     ),
     components(schemas(
         ProblemDetails, Table, ExportManifest, PointEvent, PointList, SelectedPointList
@@ -116,7 +66,7 @@ struct Document;
 struct TokenSecurity;
 
 impl Modify for TokenSecurity {
-    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+    fn modify(&self, document: &mut OpenApi) {
         let scheme = HttpBuilder::new()
             .scheme(HttpAuthScheme::Bearer)
             .description(Some(

@@ -1,7 +1,5 @@
 //! Verification of the store: the database's own checks, and every blob against its name.
 
-use futures::future::BoxFuture;
-
 use crate::blob_id::BlobId;
 use crate::engine::query::query;
 use crate::engine::sql;
@@ -33,12 +31,7 @@ impl Store {
     ///
     /// # Errors
     /// The database cannot be read. Contents that can be read but are wrong are reported, and are no error.
-    pub fn check(&self) -> BoxFuture<'_, Result<CheckReport>> {
-        // Boxed, so that it is compiled with this crate.
-        Box::pin(self.read_and_compare())
-    }
-
-    async fn read_and_compare(&self) -> Result<CheckReport> {
+    pub async fn check(&self) -> Result<CheckReport> {
         let mut report = CheckReport::default();
         let pages: Vec<String> = query(sql::check::PAGES).scalars(&self.database).await?;
         report

@@ -8,7 +8,6 @@
 use std::collections::{BTreeMap, HashSet};
 use std::time::{Duration, Instant};
 
-use futures::future::BoxFuture;
 use serde_json::{Value, json};
 
 use crate::blob::object::StoredObject;
@@ -104,24 +103,17 @@ impl Store {
     ///
     /// # Errors
     /// The database or the object store fails; what was deleted until then stays deleted.
-    pub fn collect_garbage<'a>(
-        &'a self,
-        policy: &'a RetentionPolicy,
-        is_dry_run: bool,
-    ) -> BoxFuture<'a, Result<Garbage>> {
-        // Boxed, so that it is compiled with this crate, and not again in each that calls it.
-        Box::pin(async move {
-            if is_dry_run {
-                return self.collect(policy, true).await;
-            }
-            query(sql::garbage::BEGIN_COLLECTION).scalars::<i64>(&self.database).await?;
-            let garbage = self.collect(policy, false).await?;
-            query(sql::garbage::END_COLLECTION)
-                .bind(garbage.to_json().to_string())
-                .execute(&self.database)
-                .await?;
-            Ok(garbage)
-        })
+    pub async fn collect_garbage(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
+        if is_dry_run {
+            return self.collect(policy, true).await;
+        }
+        query(sql::garbage::BEGIN_COLLECTION).scalars::<i64>(&self.database).await?;
+        let garbage = self.collect(policy, false).await?;
+        query(sql::garbage::END_COLLECTION)
+            .bind(garbage.to_json().to_string())
+            .execute(&self.database)
+            .await?;
+        Ok(garbage)
     }
 
     /// The last collection; none if there was none yet.

@@ -9,7 +9,6 @@ mod table;
 
 use std::time::Duration;
 
-use futures::future::LocalBoxFuture;
 use futures::{StreamExt, TryStreamExt, stream};
 
 use self::table::Table;
@@ -134,17 +133,7 @@ pub enum TransferError {
 ///
 /// # Errors
 /// One of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
-pub fn transfer<'a>(
-    source: &'a StoreConfig,
-    target: &'a StoreConfig,
-    source_use: SourceUse,
-    progress: &'a mut dyn FnMut(TransferProgress),
-) -> LocalBoxFuture<'a, Result<TransferReport, TransferError>> {
-    // Boxed, so that it is compiled with this crate.
-    Box::pin(carry_over(source, target, source_use, progress))
-}
-
-async fn carry_over(
+pub async fn transfer(
     source: &StoreConfig,
     target: &StoreConfig,
     source_use: SourceUse,

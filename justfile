@@ -22,7 +22,7 @@ test-fast *filter:
 check: python
     cargo fmt --all --check
     cargo clippy --locked --workspace --all-targets -- -D warnings
-    cargo clippy --locked -- -D warnings
+    cargo check --locked
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
     npm ci --prefix server/web --no-audit --no-fund
     npm --prefix server/web run check

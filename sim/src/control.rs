@@ -52,12 +52,12 @@ impl Control {
         self.shared.suspend.store(true, Ordering::Relaxed);
     }
 
-    /// Whether a cancel was asked for.
+    /// True if a cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
         self.shared.cancel.load(Ordering::Relaxed)
     }
 
-    /// Whether a checkpoint was asked for.
+    /// True if a checkpoint was requested.
     pub fn is_suspended(&self) -> bool {
         self.shared.suspend.load(Ordering::Relaxed)
     }

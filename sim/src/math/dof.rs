@@ -23,13 +23,13 @@ pub const THETA_Z: usize = 5;
 /// The names of all of them, in their order.
 pub const NAMES: [&str; DOFS] = ["u", "v", "w", "theta_x", "theta_y", "theta_z"];
 
-/// How many are lateral displacements: the first ones of every system.
+/// Number of lateral displacements, the first degrees of freedom of every system.
 pub const LATERAL: usize = 2;
 
-/// How many are rotations of bending: in every system they stand before the twist, or last where there is none.
+/// Number of rotations of bending. In every system they stand before the twist, or last if there is none.
 pub const BENDING_ROTATIONS: usize = 2;
 
-/// Which D of a node's degrees of freedom a system has. In its vectors and blocks they stand one after the other, u at [`U`], v at [`V`]
+/// Degrees of freedom of a node that a system has, D in number. In its vectors and blocks they stand one after the other, u at [`U`], v at [`V`]
 /// and the twist at [`Dofs::twist`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dofs<const D: usize = DOFS>([usize; D]);
@@ -43,7 +43,7 @@ impl<const D: usize> Dofs<D> {
     /// Those given.
     ///
     /// # Panics
-    /// When they are not in their order, or u and v are not among them.
+    /// The degrees of freedom are not in their order, or lack u or v.
     pub fn new(dofs: [usize; D]) -> Self {
         assert!(
             dofs.starts_with(&[U, V]) && dofs.is_sorted() && dofs.iter().all(|&dof| dof < DOFS),

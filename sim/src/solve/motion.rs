@@ -16,7 +16,7 @@ use crate::string::beam::ElementMatrix;
 /// values is part of the load.
 #[derive(Debug, Clone)]
 pub struct DynamicSystem<const D: usize = DOFS> {
-    /// Which of a node's degrees of freedom these are. A system starts with all;
+    /// Degrees of freedom of a node that the system has. A system starts with all;
     /// [`DynamicSystem::reduced_to`] leaves out those that are held at every node.
     pub freedoms: Dofs<D>,
     /// Mass: structure and added mass of the mud.

@@ -1,4 +1,4 @@
-//! Where the string must have nodes.
+//! Places at which the string must have nodes.
 
 use drillsweep_scenario::{
     DrillString, ElementLengths, Material, Scenario, Section, SectionKind, WrittenOutMesh,

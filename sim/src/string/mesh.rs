@@ -49,7 +49,7 @@ pub struct MeshNode {
     pub stiffness_share: f64,
     /// The same of the damping, `contact.damping`; over 1 N s/m if that is zero and a length's need not be.
     pub damping_share: f64,
-    /// Whether the clearance is a gauge's.
+    /// True if the clearance is a gauge's.
     pub is_gauge: bool,
     /// The masses put here.
     pub unbalance: Vec<NodeUnbalance>,
@@ -166,7 +166,7 @@ fn on_string(what: &'static str, places: impl Iterator<Item = f64>, length: f64)
     Ok(())
 }
 
-/// Whether a measured depth \[m\] lies on a string of `length` \[m\].
+/// True if a measured depth \[m\] lies on a string of `length` \[m\].
 pub(crate) fn is_on_string(measured_depth: f64, length: f64) -> bool {
     (-DEPTH_ROUNDING..=length + DEPTH_ROUNDING).contains(&measured_depth)
 }

@@ -161,7 +161,7 @@ fn check_contact(report: &mut Report, contact: &ContactLaw) {
     report.positive(contact.friction_reference_speed, "contact.friction_reference_speed");
 }
 
-/// Whether the value of a length belongs to the law; reports one that nothing reads.
+/// True if the value of a length belongs to the law; reports a value that the law does not use.
 fn belongs(report: &mut Report, contact: &ContactLaw, field: &str, value: f64) -> bool {
     let belongs = contact.law == WallLaw::PerLength;
     report.require(

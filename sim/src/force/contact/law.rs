@@ -24,7 +24,7 @@ pub struct ContactParameters<L> {
     decay: L,
     /// 1/a \[m/s\], the sliding speed that the curve of (14) is a function of; infinite without friction.
     reach: L,
-    /// Whether any friction is felt: without, its coefficient is not evaluated.
+    /// True if there is any friction: otherwise its coefficient is not evaluated.
     pub(super) has_friction: bool,
     /// Friction of a node at rest.
     at_rest: StartFriction,

@@ -42,7 +42,7 @@ pub struct ContactForce<L> {
     pub penetration_rate: L,
 }
 
-/// How a node's motion at the end of a solve gives way to its own contact force: what makes the force implicit at the node.
+/// Compliance of a node's motion at the end of a solve to its own contact force, which makes the force implicit at the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yielding<L> {
     /// Lateral displacement by a lateral force \[m/N\].
@@ -99,7 +99,7 @@ pub fn implicit_contact<L: Lane>(
     implicit_force(law, node, motion, rotation_speed, yielding)
 }
 
-/// Where nodes that turn with their own force come to rest in it, and the normal force that they do so under; the others as they are.
+/// Places at which nodes that turn with their own force come to rest in it, with their normal force; other nodes stay unchanged.
 ///
 /// Without its force F n + F_t t, F along the normal n = x/r and friction F_t along the tangent t, such a node would be at
 /// `y = x + g (F n + F_t t)`. It comes to r along the new normal where `y = (r + g F(r)) n + g F_t t`, which gives both: n by the

@@ -1,4 +1,4 @@
-//! How the contact force of a node that slides at the speed of rotation changes with its motion.
+//! Derivatives of the contact force of a node that slides at the speed of rotation, by its motion.
 
 use super::law::ContactParameters;
 use super::node::ContactNode;

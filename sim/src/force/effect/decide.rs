@@ -1,4 +1,4 @@
-//! Which effects a scene calls for, and why.
+//! Effects that a scenario activates, with reasons.
 
 use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
@@ -16,9 +16,9 @@ pub struct EffectDecision {
     pub effect: Effect,
     /// Its switch in the scenario.
     pub switch: Switch,
-    /// Whether it takes part.
+    /// True if the effect takes part.
     pub active: bool,
-    /// Why.
+    /// Reason for the decision.
     pub reason: String,
 }
 

@@ -1,4 +1,4 @@
-//! How an off-centre pipe eases the flow past it.
+//! Factors by which eccentricity lowers the pressure loss of the flow past a pipe.
 //!
 //! The factors were fitted for 0.3 <= kappa <= 0.9, 0 <= e <= 0.95 and an index of 0.4 to 1. Against a 2D
 //! solution of yield-power-law flow they hold within 1 % down to N = 0.367. With e <= 1 and the index cut by

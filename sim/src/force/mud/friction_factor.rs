@@ -17,7 +17,7 @@ pub(super) struct FrictionFactor {
     pub(super) turbulent_factor: f64,
     /// Generalized index as the correlations take it.
     pub(super) index: f64,
-    /// Where the regimes end.
+    /// Limits of the flow regimes.
     pub(super) limits: RegimeLimits,
 }
 

@@ -1,4 +1,4 @@
-//! How rotation thins the mud and eases its laminar flow.
+//! Shear thinning of the mud by rotation, which lowers the friction of its laminar flow.
 
 use super::laminar::LaminarFlow;
 use super::rheology::Rheology;

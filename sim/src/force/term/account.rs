@@ -8,8 +8,8 @@ pub struct Account {
     pub name: &'static str,
     /// Its side of the balance.
     pub side: Side,
-    /// Whether it holds what the drive passes straight on to steady sliding: such accounts count by their balance alone in the energy that
-    /// the vibration turns over.
+    /// True if the account holds energy that the drive passes straight on to steady sliding: such accounts count by their balance alone in the
+    /// energy that the vibration turns over.
     pub is_passed_on: bool,
     /// Its value by what is booked \[J\].
     pub(crate) value: fn(&Booked<'_>) -> f64,

@@ -43,7 +43,7 @@ pub const DAMPING: [Option<&Account>; 4] = [
 /// Place of an account in [`DAMPING`].
 ///
 /// # Panics
-/// When it has none: an effect that adds such a matrix has its account there.
+/// The account has no place: an effect that adds such a matrix has its account there.
 pub(crate) fn place_of_damping(account: Option<&Account>) -> usize {
     let name = account.map(|account| account.name);
     let place = DAMPING.iter().position(|other| other.map(|other| other.name) == name);

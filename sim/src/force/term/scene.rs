@@ -15,12 +15,12 @@ pub struct Scene<'a> {
     pub active: &'a ActiveEffects,
 }
 
-/// Whether a scene calls for an effect, and why.
+/// Decision on whether a scenario needs an effect, with its reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Call {
-    /// Whether it does.
+    /// True if the scenario needs the effect.
     pub active: bool,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: &'static str,
 }
 
@@ -35,12 +35,12 @@ pub(crate) const fn no(reason: &'static str) -> Call {
 }
 
 impl Scene<'_> {
-    /// Whether the string turns.
+    /// True if the string turns.
     pub(crate) fn turns(&self) -> bool {
         self.scenario.operation.rotation_speed_rpm != 0.0
     }
 
-    /// Whether the hole is straight along the whole string.
+    /// True if the hole is straight along the whole string.
     pub(crate) fn is_straight(&self) -> bool {
         let sections = self.scenario.string.sections.iter();
         let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
@@ -97,7 +97,7 @@ pub(crate) struct LateralWave {
 }
 
 impl LateralWave {
-    /// That along a section of a scenario's string.
+    /// Mean section along a section of a scenario's string.
     pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
         let material = scenario.string.body_material(section);
         let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);

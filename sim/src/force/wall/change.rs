@@ -10,7 +10,7 @@ pub(crate) struct SweepChange {
 }
 
 impl SweepChange {
-    /// Whether neither exceeds its bound; a change that is not a number does.
+    /// True if neither change exceeds its bound; a change that is not a number does.
     pub(crate) fn is_within(&self, bound: &SweepChange) -> bool {
         self.lateral <= bound.lateral && self.friction <= bound.friction
     }

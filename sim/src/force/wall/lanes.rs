@@ -61,14 +61,14 @@ pub(crate) struct NodeContact {
     pub(crate) touching: bool,
 }
 
-/// How every node gives way to its own contact forces in a solve: four nodes side by side.
+/// Compliance of every node to its own contact forces in a solve, four nodes at a time.
 #[derive(Debug, Clone)]
 pub(crate) struct Compliance {
     groups: Vec<GroupCompliance>,
     along: Vec<SegmentCompliance<Four>>,
 }
 
-/// How four nodes give way to their own contact forces.
+/// Compliance of four nodes to their own contact forces.
 #[derive(Debug, Clone, Copy)]
 struct GroupCompliance {
     /// Lateral displacement by a lateral force \[m/N\].

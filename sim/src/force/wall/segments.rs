@@ -110,7 +110,7 @@ impl<const D: usize> Segments<D> {
         }
     }
 
-    /// Whether the wall acts along elements at all.
+    /// True if the wall does not act along elements.
     pub(super) fn is_empty(&self) -> bool {
         self.groups.is_empty()
     }

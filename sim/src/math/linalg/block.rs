@@ -123,7 +123,7 @@ impl<const D: usize> Block<D> {
         self.columns.as_flattened().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
     }
 
-    /// Whether all entries are finite.
+    /// True if all entries are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.columns.as_flattened().iter().all(|entry| entry.is_finite())
     }

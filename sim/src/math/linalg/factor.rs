@@ -156,7 +156,7 @@ impl<const D: usize> Factor<D> {
     /// Solves `A x = b`; `between` is room for as many rows.
     ///
     /// # Panics
-    /// When anything has not as many rows as the matrix.
+    /// An argument has another number of rows than the matrix.
     pub fn solve_field(&self, b: &NodalField<D>, between: &mut [[f64; D]], x: &mut NodalField<D>) {
         assert!([b.nodes(), x.nodes()] == [self.rows(); 2]);
         self.solve_with(|row, _| b.node(row), between, |row, value, _| x.set_node(row, value));

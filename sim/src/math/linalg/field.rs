@@ -71,7 +71,7 @@ impl<const D: usize> NodalField<D> {
     /// Takes over the values of each node in turn.
     ///
     /// # Panics
-    /// When there are not as many nodes.
+    /// The number of nodes differs.
     pub fn copy_from_nodes(&mut self, nodes: &[[f64; D]]) {
         assert_eq!(nodes.len(), self.nodes);
         let (whole, rest) = nodes.as_chunks();
@@ -88,7 +88,7 @@ impl<const D: usize> NodalField<D> {
     /// Hands out the values of each node in turn.
     ///
     /// # Panics
-    /// When there are not as many nodes.
+    /// The number of nodes differs.
     pub fn copy_to_nodes(&self, nodes: &mut [[f64; D]]) {
         assert_eq!(nodes.len(), self.nodes);
         for (nodes, group) in nodes.chunks_mut(LANES).zip(self.groups()) {
@@ -99,7 +99,7 @@ impl<const D: usize> NodalField<D> {
     /// Takes over the values of another field of as many nodes.
     ///
     /// # Panics
-    /// When it has not as many.
+    /// The number of nodes differs.
     pub fn copy_from(&mut self, other: &Self) {
         assert_eq!(self.nodes, other.nodes);
         self.groups.copy_from_slice(&other.groups);
@@ -142,7 +142,7 @@ impl<const D: usize> NodalField<D> {
         }
     }
 
-    /// Whether all values are finite.
+    /// True if all values are finite.
     pub fn is_finite(&self) -> bool {
         let infinity = Four::splat(f64::INFINITY);
         let values = self.groups().as_flattened();

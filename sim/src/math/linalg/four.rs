@@ -6,7 +6,7 @@ use wide::f64x4;
 
 use super::lane::{Lane, Mask};
 
-/// Whether vectors multiply and add in one instruction. Without, they would round twice, and a lane alone once: then all goes lane by
+/// True if vectors multiply and add in one instruction. Without it, vectors would round twice and a lane alone once: then all is computed lane by
 /// lane, at a twelfth of the speed, to the same bits.
 pub(super) const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
@@ -33,7 +33,7 @@ impl Four {
     /// The values of lanes 0 to 3.
     ///
     /// # Panics
-    /// When there are not four.
+    /// There are not four values.
     #[inline(always)]
     pub fn from_slice(values: &[f64]) -> Self {
         let [a, b, c, d] = values else { panic!("{} values for four lanes", values.len()) };

@@ -129,7 +129,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     /// The same truth value in every lane.
     fn splat(value: bool) -> Self;
 
-    /// Whether any lane is true.
+    /// True if any lane is true.
     fn any(self) -> bool;
 
     /// The truth value of one lane.

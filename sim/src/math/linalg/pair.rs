@@ -19,12 +19,12 @@ pub struct MatrixPair<A, const D: usize = DOFS> {
     rows: usize,
     /// Of every four rows in turn, first those of A, then those of B.
     entries: Vec<Four>,
-    /// Whether the last degree of freedom couples with all others, or with the two before it alone.
+    /// True if the last degree of freedom couples with all others, false if with the two before it alone.
     last_couples: bool,
     kind: PhantomData<A>,
 }
 
-/// How a matrix is kept, four block rows at a time, and multiplied.
+/// Storage of a matrix, four block rows at a time, with its product.
 pub trait Storage<const D: usize> {
     /// Contribution of the rows before to these.
     type Carried: Copy;
@@ -50,7 +50,7 @@ impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     /// Copies two matrices.
     ///
     /// # Panics
-    /// When they differ in size.
+    /// The matrices differ in size.
     pub fn new(a: &BlockTridiagonal<D>, b: &BlockTridiagonal<D>) -> Self {
         assert_eq!(a.rows(), b.rows());
         let last_couples = [a, b].into_iter().any(BlockTridiagonal::last_couples);
@@ -70,7 +70,7 @@ impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     /// `out = whole - (A x + B y)`.
     ///
     /// # Panics
-    /// When a vector has not as many rows as the matrices.
+    /// A vector has another number of rows than the matrices.
     pub fn subtract_products(
         &self,
         whole: &NodalField<D>,

@@ -16,7 +16,7 @@ pub struct SkewPart<const D: usize = DOFS> {
     /// Of every group in turn, row by row: the entries of the blocks above the diagonal, then those right of the diagonal of the blocks
     /// on it. Below stands minus the transposed.
     entries: Vec<Four>,
-    /// Whether the last degree of freedom takes part: a follower torque does not couple the twist with anything.
+    /// True if the last degree of freedom takes part: a follower torque does not couple the twist with anything.
     last_couples: bool,
 }
 
@@ -24,7 +24,7 @@ pub struct SkewPart<const D: usize = DOFS> {
 #[derive(Debug, Clone)]
 struct Rows {
     group: usize,
-    /// Whether displacements couple with rotations, and these with each other at the same node, but nothing else: a torque works
+    /// True if displacements couple with rotations, and rotations with each other at the same node, but nothing else: a torque acts
     /// on bending.
     only_bending: bool,
 }
@@ -70,7 +70,7 @@ impl<const D: usize> SkewPart<D> {
     /// `sum_k weight_k v_k^T A x_k`, the matrix read once for all of them.
     ///
     /// # Panics
-    /// When a vector has fewer rows than the matrix.
+    /// A vector has fewer rows than the matrix.
     pub fn product<const K: usize>(&self, pairs: [WeightedPair<'_, D>; K]) -> f64 {
         let sums =
             if self.last_couples { self.sums::<K, true>(&pairs) } else { self.sums::<K, false>(&pairs) };
@@ -183,8 +183,8 @@ const fn count_in_block<const D: usize>(same_node: bool, last_couples: bool, onl
     count
 }
 
-/// Whether an entry, of the same node or of the next one, is kept: right of the diagonal; of the last degree of freedom only if it couples;
-/// where only bending couples, between a displacement and a rotation, or two rotations of a node.
+/// True if an entry, of the same node or of the next one, is kept. It lies right of the diagonal. An entry of the last degree of freedom is kept
+/// only if that couples; if only bending couples, an entry is kept between a displacement and a rotation, or between two rotations of a node.
 #[inline(always)]
 const fn is_kept<const D: usize>(
     same_node: bool,

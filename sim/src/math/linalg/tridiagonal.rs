@@ -41,7 +41,7 @@ impl<const D: usize> BlockTridiagonal<D> {
     /// Adds a block at (row, column).
     ///
     /// # Panics
-    /// When the place is outside the three diagonals.
+    /// The block lies outside the three diagonals.
     pub fn add_block(&mut self, row: usize, column: usize, block: &Block<D>) {
         assert!(row < self.rows() && column < self.rows(), "block ({row}, {column}) of {} rows", self.rows());
         if row == column {
@@ -112,7 +112,7 @@ impl<const D: usize> BlockTridiagonal<D> {
     /// that row's.
     ///
     /// # Errors
-    /// When a pivot block is singular.
+    /// A pivot block is singular.
     pub fn inverse_bands(&self) -> Result<InverseBands<D>, SingularBlock> {
         let rows = self.rows();
         let inverse = |pivot: &Block<D>, row: usize| {
@@ -141,7 +141,7 @@ impl<const D: usize> BlockTridiagonal<D> {
         Ok(InverseBands { diagonal: pivots, upper })
     }
 
-    /// Whether the last degree of freedom couples with others than the two before it.
+    /// True if the last degree of freedom couples with others than the two before it.
     pub fn last_couples(&self) -> bool {
         self.blocks().into_iter().any(|(blocks, rows)| {
             blocks[rows].iter().any(|block| {
@@ -157,7 +157,7 @@ impl<const D: usize> BlockTridiagonal<D> {
     }
 }
 
-/// Whether an entry of a block can be other than zero in a matrix of which it is known if its
+/// True if an entry of a block can differ from zero, given whether the matrix's
 /// [last degree of freedom couples](BlockTridiagonal::last_couples).
 #[inline(always)]
 pub const fn can_couple<const D: usize>(row: usize, column: usize, last_couples: bool) -> bool {

@@ -93,9 +93,9 @@ pub struct Batches {
     pub window: Range<usize>,
     /// Half widths of the intervals of 95 % of orbit size and radius deviation of each node \[m\].
     pub half_widths: Vec<[f64; 2]>,
-    /// Whether the first and the last batches have the same means within their scatter.
+    /// True if the first and the last batches have the same means within their scatter.
     pub is_steady: bool,
-    /// Whether all intervals are as narrow as allowed.
+    /// True if all intervals are as narrow as allowed.
     pub is_narrow: bool,
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::window::Window;
 
-/// Where an orbit lies and how large it is \[m\].
+/// Position and size of an orbit \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct OrbitStatistics {
     /// Mean u.
@@ -30,7 +30,7 @@ pub struct OrbitStatistics {
 /// Statistics of the samples (u, v), all weighted alike; nothing where there are none.
 ///
 /// # Panics
-/// When u and v differ in length.
+/// u and v differ in length.
 pub fn orbit_statistics(u: &[f64], v: &[f64]) -> Option<OrbitStatistics> {
     weighted_orbit_statistics(u, v, Window::Rectangular)
 }
@@ -38,7 +38,7 @@ pub fn orbit_statistics(u: &[f64], v: &[f64]) -> Option<OrbitStatistics> {
 /// Statistics of the samples (u, v) with the weights of a window; extremes are those of all samples. Nothing where there are none.
 ///
 /// # Panics
-/// When u and v differ in length.
+/// u and v differ in length.
 pub fn weighted_orbit_statistics(u: &[f64], v: &[f64], window: Window) -> Option<OrbitStatistics> {
     assert_eq!(u.len(), v.len());
     let weights: Vec<f64> = (0..u.len()).map(|n| window.weight(n, u.len())).collect();

@@ -51,7 +51,7 @@ pub struct PeakSearch {
     pub count: usize,
     /// Lines closer than this to a higher one are skipped \[Hz\].
     pub min_separation_hz: f64,
-    /// Whether the mean position (0 Hz) is skipped.
+    /// True if the mean position (0 Hz) is skipped.
     pub exclude_mean: bool,
 }
 
@@ -72,7 +72,7 @@ pub struct PeakSearch {
 /// ```
 ///
 /// # Panics
-/// When u and v differ in length.
+/// u and v differ in length.
 pub fn full_spectrum(u: &[f64], v: &[f64], rate_hz: f64, window: Window) -> FullSpectrum {
     assert_eq!(u.len(), v.len());
     let count = u.len();

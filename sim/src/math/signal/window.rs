@@ -1,4 +1,4 @@
-//! Which samples are looked at, and with what weights.
+//! Windows: ranges of samples and their weights.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -30,8 +30,8 @@ impl Window {
         (0..count).map(|n| self.weight(n, count)).sum()
     }
 
-    /// How far a line lies from its highest bin towards the higher neighbour, in bins from 0 to 1/2, where
-    /// `ratio` is the neighbour's amplitude over the highest one's. Exact for a lone line in a long window
+    /// Offset of a line from its highest bin towards the higher neighbour, in bins from 0 to 1/2; `ratio` is the neighbour's
+    /// amplitude over the highest bin's. Exact for a lone line in a long window
     /// (Rife and Vincent 1970 without window, Grandke 1983 with Hann's).
     pub(super) fn line_offset(self, ratio: f64) -> f64 {
         let offset = match self {

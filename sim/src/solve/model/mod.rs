@@ -49,7 +49,7 @@ pub struct Model {
     pub(crate) forces: Vec<Arc<dyn NodalForce>>,
 }
 
-/// Why a scenario has no model.
+/// Reason for which a scenario has no model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// The survey does not describe a path.
@@ -64,7 +64,7 @@ impl Model {
     /// Builds the model of a scenario.
     ///
     /// # Errors
-    /// When the survey has no path or the string no mesh; a validated scenario has both.
+    /// The survey has no path or the string has no mesh; a validated scenario has both.
     pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
         let path = WellPath::new(&scenario.well)?;
         let effects = active_effects(scenario);

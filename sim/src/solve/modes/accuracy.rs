@@ -1,4 +1,4 @@
-//! Whether a pair satisfies the equation of motion, and how well its eigenvalue is determined.
+//! Acceptance of a pair as a solution of the equation of motion, and the uncertainty of its eigenvalue.
 
 use nalgebra::Complex;
 
@@ -21,9 +21,9 @@ pub(super) struct Accuracy<'a> {
 
 /// Verdict of the equation of motion on a pair.
 pub(super) struct Judgement {
-    /// Whether it is an eigenpair.
+    /// True if the pair is an eigenpair.
     pub(super) believed: bool,
-    /// How far \[1/s\] another computation may find the same eigenvalue from it: the residual and the rounding of the pencil's products, over
+    /// Distance \[1/s\] at which another computation may find the same eigenvalue: the residual and the rounding of the pencil's products, over
     /// the derivative of the quadratic form.
     pub(super) uncertainty: f64,
 }

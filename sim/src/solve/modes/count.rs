@@ -1,4 +1,4 @@
-//! How many eigenvalues a region holds: the winding number of the determinant along its edge.
+//! Number of eigenvalues in a region: the winding number of the determinant along its edge.
 //!
 //! det Q(l) is analytic, so that its phase turns once around the edge for every eigenvalue inside (the argument principle). What is followed
 //! is the determinant divided by (l - l_k) for the eigenvalues that are known, inside and outside: its phase turns once for every one that
@@ -12,8 +12,8 @@ use nalgebra::Complex;
 use super::pencil::Pencil;
 use super::shifted::ShiftedPencil;
 
-/// Where a piece of the edge is looked at, in shares of it. The steps between have no common measure: a phase that turned by whole turns
-/// in each of them would have to do so in proportion to all of them.
+/// Places in a piece of the edge at which the determinant is evaluated, in shares of the piece. The steps between them have no common measure:
+/// a phase that turned by whole turns in each of them would have to do so in proportion to all of them.
 const PLACES: [f64; 5] = [0.0, 0.2099, 0.5067, 0.6364, 1.0];
 
 /// By how much the phase may turn between two of these places \[rad\].
@@ -41,7 +41,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// How many of `known` lie in it, which stand for their conjugates too: of a region from 0, those are counted.
+    /// Number of `known` in the region. They stand for their conjugates too: in a region from 0, the conjugates are counted.
     pub(super) fn holds(&self, known: &[Complex<f64>]) -> i64 {
         let ([low, high], [from, to]) = (self.growth, self.frequency);
         let inside =

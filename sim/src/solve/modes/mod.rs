@@ -32,7 +32,7 @@ use walk::eigenpairs;
 /// The modes of a model about its equilibrium.
 ///
 /// # Errors
-/// When the band is empty or its eigenvalues cannot be found.
+/// The band is empty or its eigenvalues cannot be found.
 pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> Result<Modes, ModesError> {
     modes_of(&Pencil::about(model, equilibrium), &model.mesh.depths(), search)
 }

@@ -43,11 +43,11 @@ pub struct Modes {
     pub complete_to_hz: f64,
     /// See `complete_to_hz` \[1/s\].
     pub complete_to_rate: f64,
-    /// Whether that was shown by a count.
+    /// Result of the count that verifies this.
     pub completeness: Completeness,
 }
 
-/// Whether all eigenvalues that were looked for were found, by their number: the winding number of the pencil's determinant along the
+/// Check that all eigenvalues were found, by their number: the winding number of the pencil's determinant along the
 /// edge of the band, for decay below the rate of the answer and growth below twice the band's highest circular frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -127,7 +127,7 @@ impl ModeKind {
     }
 }
 
-/// Why a band has no modes.
+/// Reason for which a band has no modes.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ModesError {
     /// The band is empty or not finite.

@@ -92,7 +92,7 @@ impl ShiftedPencil {
     }
 }
 
-/// Whether a permutation is an odd number of exchanges.
+/// True if a permutation is an odd number of exchanges.
 fn is_odd(order: &[usize]) -> bool {
     let mut seen = vec![false; order.len()];
     let mut exchanges = 0;

@@ -1,4 +1,4 @@
-//! Whether a scene is unstable by its physics, and by which: what distinguishes a failed run from a limit cycle.
+//! Physical instability of a scenario and its mode: distinguishes a failed run from a limit cycle.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -29,11 +29,11 @@ const EXPLAINING_GROWTH: f64 = 3.0;
 /// The verdict of the linearised equations about the equilibrium, contacts closed, on frequencies up to `complete_to_hz`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Stability {
-    /// Whether all modes decay; absent where none was found to grow and not all are known to have been found.
+    /// True if all modes decay; absent if none was found to grow and the search is not known to be complete.
     pub stable: Option<bool>,
     /// The frequency \[Hz\] up to which modes were looked at.
     pub complete_to_hz: f64,
-    /// Whether the modes that were looked at are all there are up to that frequency.
+    /// Result of the count that verifies that all modes up to that frequency were found.
     pub completeness: Completeness,
     /// The mode that grows fastest; absent where the scene is stable.
     pub instability: Option<Instability>,
@@ -125,7 +125,7 @@ impl fmt::Display for Instability {
 }
 
 impl Stability {
-    /// Whether a mode that grows can be why a run diverged after `time` \[s\].
+    /// True if a growing mode can explain that a run diverged after `time` \[s\].
     pub fn explains_divergence_at(&self, time: f64) -> bool {
         self.instability.is_some_and(|unstable| unstable.growth_rate * time >= EXPLAINING_GROWTH)
     }
@@ -146,7 +146,7 @@ impl Stability {
 /// The verdict on a model about its equilibrium, on all modes up to 20 Hz.
 ///
 /// # Errors
-/// When the modes cannot be found.
+/// The modes cannot be found.
 pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, ModesError> {
     let pencil = Pencil::about(model, equilibrium);
     let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
@@ -236,7 +236,7 @@ impl Stability {
     }
 }
 
-/// Whether a motion grows more than e times before it has turned by a radian: the string leaves the equilibrium and does not vibrate about it.
+/// True if a motion grows more than e times before it has turned by a radian: the string leaves the equilibrium and does not vibrate about it.
 fn does_not_vibrate(pair: &Eigenpair) -> bool {
     pair.value.im < pair.value.re
 }

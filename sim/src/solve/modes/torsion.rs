@@ -1,4 +1,4 @@
-//! Which torsional modes velocity-weakening friction feeds, and whether damping ends that before the mesh does.
+//! Torsional modes that velocity-weakening friction excites, up to the frequency at which damping or the mesh ends them.
 //!
 //! Friction that falls with speed is a negative damper at every node that slides. It feeds torsion at all frequencies alike; only a
 //! damping that grows with frequency (`damping.stiffness_proportional`) ends it. Without one, modes grow up to the highest frequency of
@@ -47,7 +47,7 @@ pub struct UndampedTorsion {
     pub largest_growth: f64,
     /// Highest torsional frequency of the mesh \[Hz\]; without `growing_modes` a bound.
     pub mesh_hz: f64,
-    /// Whether modes grow up to where the mesh ends, so that mesh and step decide which torsion survives.
+    /// True if modes grow up to the highest frequency of the mesh, so that mesh and step decide which torsion survives.
     pub up_to_the_mesh: bool,
 }
 

@@ -30,7 +30,7 @@ const COUNTED_GROWTH: f64 = 2.0;
 /// Halvings of the band in search of what is missing.
 const MOST_HALVINGS: u32 = 6;
 
-/// How far beyond the band its edge may lie, in the radius in which eigenvalues are known: next to the edge there should be none.
+/// Distance beyond the band at which its edge may lie, in the radius in which eigenvalues are known: there should be none next to the edge.
 const MARGIN: f64 = 0.3;
 
 /// Findings of a walk over a band.

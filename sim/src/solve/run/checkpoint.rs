@@ -49,7 +49,7 @@ pub struct Checkpoint {
     progress: Vec<u8>,
 }
 
-/// Why a checkpoint cannot be used.
+/// Reason for which a checkpoint cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CheckpointError {
     /// The bytes are not a checkpoint.
@@ -86,7 +86,7 @@ impl Checkpoint {
     /// A checkpoint from bytes.
     ///
     /// # Errors
-    /// When the bytes are not a checkpoint.
+    /// The bytes are not a checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         Ok(postcard::from_bytes(bytes)?)
     }

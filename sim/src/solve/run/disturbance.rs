@@ -1,4 +1,4 @@
-//! Where members of an ensemble start.
+//! Starts of the members of an ensemble.
 
 use crate::math::dof::{DOFS, U, V};
 use crate::solve::model::{Model, NodalVector};

@@ -75,7 +75,7 @@ impl Series {
 /// The histories of all recorded nodes, in memory (`Vec<NodeHistory>`) or wherever a caller keeps the blocks that
 /// [`Transient::run_into`](super::transient::Transient::run_into) gives it.
 pub trait Histories {
-    /// Why samples cannot be read back.
+    /// Reason for which samples cannot be read back.
     type Error;
 
     /// The recorded nodes, from 0 at the top, in the order in which they are recorded.
@@ -87,7 +87,7 @@ pub trait Histories {
     /// Some samples of a series of the `index`-th recorded node.
     ///
     /// # Errors
-    /// When they cannot be read.
+    /// The samples cannot be read.
     fn read(
         &self,
         index: usize,

@@ -62,7 +62,7 @@ pub struct TransientEffort {
     pub sweeps: SweepMonitor,
 }
 
-/// How a call to [`Transient::run`] ended.
+/// Outcome of a call to [`Transient::run`].
 #[derive(Debug)]
 pub enum Outcome<H = Vec<NodeHistory>> {
     /// The run is complete.

@@ -1,4 +1,4 @@
-//! When a run has settled, and what its statistics are over.
+//! Settling of a run, and the window of its statistics.
 
 use std::fmt;
 use std::ops::Range;
@@ -290,12 +290,12 @@ impl Settle {
         self.growing.clear();
     }
 
-    /// Whether the window is to be settled.
+    /// True if the run is to choose its window by settling.
     pub(super) fn is_open(&self) -> bool {
         self.fixed.is_none()
     }
 
-    /// Whether a recorded sample is at the end of a block.
+    /// True if a recorded sample is at the end of a block.
     pub(super) fn is_block(&self, sample: u64) -> bool {
         sample.is_multiple_of(self.block)
     }

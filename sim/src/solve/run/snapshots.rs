@@ -15,7 +15,7 @@ use crate::solve::step::forces::Forces;
 /// Bytes of snapshots that are handed over in one block.
 pub const SNAPSHOT_BLOCK_BYTES: u64 = 4 << 20;
 
-/// Which samples of a run are snapshots: every so many-th, counted from the start of the run, within a window.
+/// Samples of a run that are snapshots: every n-th, counted from the start of the run, within a window.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SnapshotTimes {
     /// Samples from one snapshot to the next.
@@ -196,7 +196,7 @@ impl<const D: usize> Recorder<D> {
         block.count += 1;
     }
 
-    /// Whether the block is to be handed over.
+    /// True if the block is full and is to be handed over.
     pub(super) fn is_full(&self) -> bool {
         self.block.count >= self.most
     }

@@ -33,7 +33,7 @@ use crate::solve::step::work::Work;
 use crate::solve::step::{DivergenceReason, TransientError};
 use crate::solve::step::{dense, resolved_hz, stability};
 
-/// How often the longest step of a run that adapts its steps can be halved. The 8 ms of `draft` end at 62 us, where the explicit method
+/// Number of times that the longest step of a run with adaptive steps can be halved. The 8 ms of `draft` end at 62 us, at which the explicit method
 /// becomes stable in tool joints (6.4e-5 s in the base case): with yet shorter steps an implicit one would have no point.
 const HALVINGS: u32 = 7;
 

@@ -26,7 +26,7 @@ impl<'m> Transient<'m> {
     /// A run of `model` from its equilibrium, as its scenario says.
     ///
     /// # Errors
-    /// When a matrix is singular or an explicit step is beyond its stability limit.
+    /// A matrix is singular or an explicit step is beyond its stability limit.
     pub fn new(model: &'m Model, equilibrium: &Equilibrium) -> Result<Self, TransientError> {
         Self::member(model, equilibrium, 0)
     }
@@ -55,7 +55,7 @@ impl<'m> Transient<'m> {
     /// A run that goes on from a checkpoint of the same scenario.
     ///
     /// # Errors
-    /// When the checkpoint belongs to another scenario or model version, or as [`Transient::new`].
+    /// The checkpoint belongs to another scenario or model version, or [`Transient::new`] fails.
     pub fn resume(
         model: &'m Model,
         equilibrium: &Equilibrium,
@@ -130,7 +130,7 @@ impl<'m> Transient<'m> {
     /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots are passed over.
     ///
     /// # Errors
-    /// When the motion diverges.
+    /// The motion diverges.
     pub fn run(self, control: &Control) -> Result<Outcome, TransientError> {
         self.run_on(control, Vec::new())
     }
@@ -138,7 +138,7 @@ impl<'m> Transient<'m> {
     /// The same for a resumed run, with the histories that it had when it was suspended.
     ///
     /// # Errors
-    /// When the motion diverges, or these are not its histories.
+    /// The motion diverges, or the histories belong to another run.
     pub fn run_on(
         self,
         control: &Control,
@@ -172,7 +172,7 @@ impl<'m> Transient<'m> {
     /// cancel, all of them are.
     ///
     /// # Errors
-    /// When the motion diverges or a block cannot be kept.
+    /// The motion diverges or a block cannot be kept.
     pub fn run_into(self, control: &Control, keep: &mut Keep<'_>) -> Result<Outcome<()>, TransientError> {
         match self.0 {
             Solved::Six(run) => run.run(control, keep),

@@ -4,7 +4,7 @@ use super::overload::{self, Overload};
 use crate::force::mud::MudError;
 use crate::math::linalg::SingularBlock;
 
-/// Why there is no equilibrium.
+/// Reason for which no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
     /// Newton's method did not converge.
@@ -57,7 +57,7 @@ impl StaticsError {
         }
     }
 
-    /// Whether there may be an equilibrium nevertheless, as far as is known.
+    /// True if an equilibrium may exist nevertheless, as far as is known.
     pub(super) fn is_open(&self) -> bool {
         match self {
             Self::NotConverged { overload, .. } => overload.is_none(),

@@ -84,7 +84,7 @@ impl Equilibrium {
     /// The equilibrium of a model, searched from the centre line.
     ///
     /// # Errors
-    /// When Newton's method or the iteration with the hydraulics does not converge.
+    /// Newton's method or the iteration with the hydraulics does not converge.
     pub fn find(model: &Model) -> Result<Self, StaticsError> {
         Self::find_from(model, vec![[0.0; DOFS]; model.node_count()], &NewtonSettings::default())
     }
@@ -132,7 +132,7 @@ impl Equilibrium {
     /// The equilibrium of the same model with another friction at rest, searched from this one; this one itself if nothing rubs.
     ///
     /// # Errors
-    /// When Newton's method from here, with and without its spring, or the iteration with the hydraulics does not converge.
+    /// Newton's method from this equilibrium, with and without its spring, or the iteration with the hydraulics does not converge.
     pub fn with_friction_at_rest(
         &self,
         model: &Model,

@@ -28,7 +28,7 @@ pub(super) const LAST_ITERATIONS: usize = 40;
 /// strings that lie in their hole.
 const ARRIVED: f64 = 1e-9;
 
-/// How the search goes about it.
+/// Settings of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewtonSettings {
     /// Lateral spring per length of string that holds each iterate at the last one to begin with \[N/m2\]. Under
@@ -52,7 +52,7 @@ impl Default for NewtonSettings {
     }
 }
 
-/// How a search ended.
+/// Outcome of a search.
 pub(super) struct NewtonOutcome {
     pub(super) iterations: usize,
     pub(super) residual: f64,

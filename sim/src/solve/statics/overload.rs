@@ -24,7 +24,7 @@ pub struct Overload {
     pub negative_eigenvalues: usize,
     /// Number of rotations of the whole string about its pinned top that nothing resists.
     pub free_rotations: usize,
-    /// Whether they are those of a string whose nodes are all held by the wall.
+    /// True if the eigenvalues are those of a string whose nodes are all held by the wall.
     pub held_by_wall: bool,
     /// Measured depth \[m\] of the upper end of the stretch that is loaded most.
     pub measured_depth: f64,

@@ -1,4 +1,4 @@
-//! How long a step may be: what is asked of a step, and the step that comes next.
+//! Adaptive steps: the error allowed for a step, and the length of the next one.
 
 use drillsweep_scenario::TimeStepping;
 

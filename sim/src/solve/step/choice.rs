@@ -88,7 +88,7 @@ const STEPS_OF_FRICTION: f64 = 110.0;
 /// The largest stable step of RK4 \[s\] for a model about its equilibrium.
 ///
 /// # Errors
-/// When the mass matrix is singular.
+/// The mass matrix is singular.
 pub fn rk4_stability_limit(model: &Model, equilibrium: &Equilibrium) -> Result<f64, TransientError> {
     Ok(stability::rk4_limit(model, &model.dynamic_system(equilibrium))?)
 }

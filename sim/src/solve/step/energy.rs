@@ -91,7 +91,7 @@ impl Index<&str> for EnergyRow {
     /// The value of a column.
     ///
     /// # Panics
-    /// When there is none of that name.
+    /// No column has that name.
     fn index(&self, column: &str) -> &f64 {
         match column {
             "time" => &self.time,

@@ -1,8 +1,8 @@
-//! How a run fails.
+//! Failures of a run.
 
 use crate::math::linalg::SingularBlock;
 
-/// Why a run ended without a result.
+/// Reason for which a run ended without a result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TransientError {
     /// A matrix cannot be factored.
@@ -46,7 +46,7 @@ pub enum TransientError {
     },
 }
 
-/// How a divergence showed itself.
+/// Sign by which a divergence was recognised.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum DivergenceReason {
     /// A value was not finite.

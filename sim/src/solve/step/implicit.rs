@@ -32,7 +32,7 @@ pub(crate) struct StageMatrix<const D: usize> {
     coefficients: StageCoefficients,
     /// Entries of the right-hand side at the held degrees of freedom.
     held_values: Vec<f64>,
-    /// How nodes give way to their own contact forces.
+    /// Compliance of nodes to their own contact forces.
     compliance: StageCompliance,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct StageSolver<const D: usize> {
     normal_forces: Vec<Four>,
 }
 
-/// How far the contact iterations of a run were from convergence.
+/// Distance of a run's contact iterations from convergence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SweepMonitor {
     /// Largest change of a touching node's lateral displacement in the last sweep of any solve \[m\].

@@ -23,7 +23,7 @@ pub(crate) struct Forms<const N: usize, const D: usize> {
     /// Sums of products `w v_i v_j` of velocities of neighbouring nodes, weighted \[s\]: of every four nodes in turn, of each with itself
     /// and with the next one, in [`Places`].
     moments: Vec<Four>,
-    /// Whether any of the symmetric matrices couples the last degree of freedom with others than the two before it.
+    /// True if any of the symmetric matrices couples the last degree of freedom with others than the two before it.
     last_couples: bool,
     skew_sum: f64,
     gathered: [GatheredStage<D>; GATHERED],
@@ -178,8 +178,8 @@ fn add_products_where_coupled<const K: usize, const D: usize, const LAST: bool>(
     }
 }
 
-/// Where the moments of four nodes lie, found when the program is built: of each degree of freedom in turn those with the later ones of the same
-/// node, then those with all of the next node. Where `LAST` is false, the last degree of freedom counts with the two before it alone.
+/// Places of the moments of four nodes, found at compile time: of each degree of freedom in turn the moments with the later ones of the same
+/// node, then those with all of the next node. If `LAST` is false, the last degree of freedom counts with the two before it alone.
 struct Places<const D: usize, const LAST: bool>;
 
 /// A place that is not there.

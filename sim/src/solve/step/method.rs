@@ -14,7 +14,7 @@ pub(crate) trait Method<const D: usize> {
     /// Advances `state`, whose forces are `acting`, by one step of the level ahead or of a lower one.
     ///
     /// # Errors
-    /// When no step is short enough.
+    /// No step is short enough.
     fn advance(
         &mut self,
         forces: &Forces<D>,

@@ -46,7 +46,7 @@ const SWEEP_ITERATIONS: usize = 40;
 /// The smallest power of two of equal parts into which `step` must be cut for the contact iterations to be stable.
 ///
 /// # Errors
-/// When it takes too many, or the matrix of a step is singular.
+/// The step needs too many subdivisions, or the matrix of a step is singular.
 pub(crate) fn subdivisions(
     model: &Model,
     system: &DynamicSystem,

@@ -56,7 +56,7 @@ impl WellPath {
     }
 }
 
-/// Where e1 of the first node points: the projection of gravity on the section, or of north if there is none.
+/// Direction of e1 at the first node: the projection of gravity on the section, or of north if gravity has none.
 fn zero_direction(tangent: &Vector3<f64>) -> Vector3<f64> {
     let horizontal = tangent.x.hypot(tangent.y);
     if horizontal < VERTICAL {

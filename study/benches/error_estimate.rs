@@ -8,7 +8,7 @@ use whole_run_scenes::{WholeRun, apart, scenes};
 #[path = "../tests/whole_run_scenes/mod.rs"]
 mod whole_run_scenes;
 
-/// How estimates and true errors compare.
+/// Comparison of estimates with true errors.
 #[derive(Debug, Default)]
 struct Tally {
     covered: usize,

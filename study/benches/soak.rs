@@ -221,7 +221,7 @@ struct Differing {
 }
 
 impl Differing {
-    /// Whether the result itself reports an error as large, or an unknown one.
+    /// True if the result itself reports an error as large, or an unknown one.
     fn is_stated(&self) -> bool {
         self.stated.is_none_or(|stated| stated >= self.difference.relative)
     }

@@ -1,4 +1,4 @@
-//! How far a history can be trusted: runs of the same scenario from starts that differ by next to nothing.
+//! Time up to which a history can be trusted, from runs of the same scenario whose starts almost agree.
 //!
 //! Impacts and sliding make neighbouring histories part. From then on neither their course nor the error of an
 //! integrator along it means anything; sizes, lines and counts do, with the spread that the members show.
@@ -17,7 +17,7 @@ const BLOCK: usize = 4096;
 /// exceeds a tenth of the root mean square motion of the first about its mean. Absent where they stay together.
 ///
 /// # Errors
-/// When the histories cannot be read.
+/// The histories cannot be read.
 pub fn parting_time<H: Histories>(a: &H, b: &H, rate_hz: f64) -> Result<Option<f64>, H::Error> {
     let motion = motion(a)?;
     let samples = a.samples().min(b.samples());
@@ -39,7 +39,7 @@ pub fn parting_time<H: Histories>(a: &H, b: &H, rate_hz: f64) -> Result<Option<f
 /// Root mean square distance over some samples between two members, of each recorded node \[m\].
 ///
 /// # Errors
-/// When the histories cannot be read.
+/// The histories cannot be read.
 pub fn distances<H: Histories>(a: &H, b: &H, samples: &Range<usize>) -> Result<Vec<f64>, H::Error> {
     let ends = samples.start.min(samples.end)..samples.end.min(a.samples()).min(b.samples());
     let count = ends.len().max(1) as f64;

@@ -33,7 +33,7 @@ pub struct ResultErrors {
     /// By how much the scenario amplifies a disturbance over the orbit window; absent where no twin was run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensitivity: Option<Sensitivity>,
-    /// Whether the run's histories part from those next to them, so that their error is not known.
+    /// True if the run's histories part from those of its twin, so that their error is not known.
     #[serde(default)]
     pub histories_part: bool,
 }
@@ -62,7 +62,7 @@ pub enum TimeError {
     },
     /// Not known.
     Unknown {
-        /// Why, in words.
+        /// Reason, in words.
         reason: String,
     },
 }
@@ -78,12 +78,12 @@ pub enum SamplingError {
     },
     /// Not known.
     Unknown {
-        /// Why, in words.
+        /// Reason, in words.
         reason: String,
     },
 }
 
-/// How far runs of the same scenario differ whose starts differ by [`DISTURBANCE`]: a property of the scene, which no step makes smaller.
+/// Difference between runs of the same scenario whose starts differ by [`DISTURBANCE`]: a property of the scenario, which no step makes smaller.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum SpreadError {
@@ -98,7 +98,7 @@ pub enum SpreadError {
     },
     /// Not known.
     Unknown {
-        /// Why, in words.
+        /// Reason, in words.
         reason: String,
     },
 }

@@ -58,7 +58,7 @@ impl Footprint {
     /// Of a scenario.
     ///
     /// # Errors
-    /// When it has no model.
+    /// The scenario has no model.
     pub fn of(scenario: &Scenario) -> Result<Self, ModelError> {
         Ok(Self::of_model(&Model::new(scenario)?))
     }

@@ -34,7 +34,7 @@ pub enum MeshEstimate {
     Estimated(MeshErrors),
     /// Not known.
     Unknown {
-        /// Why, in words.
+        /// Reason, in words.
         reason: String,
     },
 }

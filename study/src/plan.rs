@@ -102,7 +102,7 @@ pub struct PlannedStudy {
     pub lines_not_known: u64,
 }
 
-/// How fast a machine is, in processor seconds; what [`calibration_runs`] say is measured.
+/// Speed of a machine, in processor seconds, measured by [`calibration_runs`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MachineSpeed {
     /// An equilibrium with its hydraulics, for each node \[s\].
@@ -159,7 +159,7 @@ impl Plan {
     /// The plan of a valid scenario; with processor times where the machine's `speed` is known.
     ///
     /// # Errors
-    /// When the scenario has no model.
+    /// The scenario has no model.
     pub fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
         Self::with_twin(scenario, speed, twin_part(scenario))
     }

@@ -32,7 +32,7 @@ pub struct Sensitivity {
     pub distances: Vec<f64>,
 }
 
-/// Why the sensitivity of a run is not known.
+/// Reason for which the sensitivity of a run is not known.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SensitivityError {
     /// It was cancelled or suspended.
@@ -50,7 +50,7 @@ impl Sensitivity {
     /// Runs the twin of a finished run; none where no node is recorded.
     ///
     /// # Errors
-    /// When it is stopped, or the run's histories cannot be read.
+    /// The run is stopped, or its histories cannot be read.
     pub fn of<H: Histories>(
         model: &Model,
         equilibrium: &Equilibrium,

@@ -1,4 +1,4 @@
-//! Whether a run's statistics depend on the friction of the equilibrium that it starts from: hysteresis.
+//! Dependence of a run's statistics on the friction of the equilibrium that it starts from: hysteresis.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use drillsweep_sim::solve::run::DISTURBANCE;
 /// Tension, torque and mud of a run are those of its equilibrium, so that the two runs differ in these too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartsCompared {
-    /// Whether orbit sizes or deviations of the radius differ by more than the accuracy promises.
+    /// True if orbit sizes or deviations of the radius differ by more than the bound of the accuracy.
     pub differ: bool,
     /// Largest difference of orbit sizes, relative to the larger of the two: 0 to 1.
     pub orbit_size: f64,

@@ -62,7 +62,7 @@ pub struct TransientSummary {
     pub unresolved_steps: u64,
     /// Contacts of all nodes together.
     pub contact_count: u64,
-    /// How often nodes came to stick, all together.
+    /// Number of slip-to-stick transitions, summed over all nodes.
     pub capture_count: u64,
     /// Largest normal force of any node \[N\].
     pub largest_normal_force: f64,
@@ -81,7 +81,7 @@ pub struct TransientSummary {
 pub struct OrbitSummary {
     /// Node, from 1 at the top.
     pub node: usize,
-    /// Why it is recorded: its number or a depth.
+    /// Choice by which the node is recorded: its number or a depth.
     pub recorded_as: NodeChoice,
     /// Its measured depth \[m\].
     pub measured_depth: f64,
@@ -109,7 +109,7 @@ pub struct OrbitSummary {
 pub struct SpectrumSummary {
     /// Node, from 1 at the top.
     pub node: usize,
-    /// Why it is recorded: its number or a depth.
+    /// Choice by which the node is recorded: its number or a depth.
     pub recorded_as: NodeChoice,
     /// Its measured depth \[m\].
     pub measured_depth: f64,
@@ -130,7 +130,7 @@ pub struct LineSummary {
     pub amplitude: f64,
     /// Sense of the whirl.
     pub whirl: Whirl,
-    /// Whether it lies within what the run's steps resolve.
+    /// True if the steps of the run resolve the line.
     pub is_resolved: bool,
 }
 
@@ -163,7 +163,7 @@ impl TransientSummary {
     /// Sums up a finished run, node by node: no more of its histories is in memory than two series of one node over a window.
     ///
     /// # Errors
-    /// When the histories cannot be read.
+    /// The histories cannot be read.
     pub fn new<H: Histories>(model: &Model, records: &Records<H>) -> Result<Self, H::Error> {
         let settling = &records.settling;
         let orbit_window = settling.window;

@@ -153,7 +153,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// How far the two methods of a reference agree in each quantity.
+/// Agreement of the two methods of a reference in each quantity.
 pub(super) fn agreements(a: Ensemble<'_>, b: Ensemble<'_>, asked: &StudyReference) -> Vec<Agreement> {
     let parts = [a.to_vec()];
     let Some(reference) = Reference::new(&parts) else { return Vec::new() };

@@ -29,7 +29,7 @@ pub struct Measure {
     pub(crate) simulated_time: f64,
     /// Window of the statistics \[s\].
     pub(crate) window: TimeWindow,
-    /// How the motion has settled.
+    /// Regime of the motion.
     pub(crate) regime: MotionRegime,
     /// Lateral histories of the recorded nodes; none of members beyond the second, or of runs that settle, each over a window of its own.
     pub(crate) histories: Vec<NodeHistory>,

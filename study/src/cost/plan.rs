@@ -72,7 +72,7 @@ pub enum Role {
 /// The lines of a study, its reference first.
 ///
 /// # Errors
-/// When the scenario has no equilibrium.
+/// The scenario has no equilibrium.
 pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     let study = scenario.cost_study.clone().unwrap_or_default();
     let model = Model::new(scenario)?;
@@ -236,7 +236,7 @@ fn part_of(interval: f64, step: f64) -> f64 {
     interval / (interval / step * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
-/// Whether the wall that a string meets depends on its mesh, so that there is no limit to converge to.
+/// True if the wall that a string meets depends on its mesh, so that there is no limit to converge to.
 pub(super) fn wall_depends_on_mesh(scenario: &Scenario) -> bool {
     active_effects(scenario).contact && scenario.contact.law == WallLaw::PerNode
 }

@@ -80,7 +80,7 @@ impl<'a> Ran<'a> {
 /// its measure with its processor time \[s\], or why it failed.
 ///
 /// # Errors
-/// When no method of the reference came to its end.
+/// All methods of the reference failed.
 pub fn report(
     scenario: &Scenario,
     planned: &[PlannedRow],

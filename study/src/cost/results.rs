@@ -60,12 +60,12 @@ impl Quantity {
         }
     }
 
-    /// Whether it is one value of the whole string, not one of each recorded node.
+    /// True if the quantity is one value of the whole string, not one of each recorded node.
     pub(crate) fn is_of_string(self) -> bool {
         self == Quantity::ContactForce
     }
 
-    /// Whether it is a deviation, which takes longer to converge than a size.
+    /// True if the quantity is a deviation, which takes longer to converge than a size.
     pub(crate) fn is_deviation(self) -> bool {
         matches!(self, Quantity::RadiusDeviation | Quantity::TorsionalSpeed | Quantity::Lines)
     }
@@ -101,7 +101,7 @@ pub struct CostReport {
     /// The two methods whose agreement makes the reference, each against the other; of an ablation the whole scenario at its
     /// own accuracy.
     pub references: Vec<CostRow>,
-    /// How far these two agree, quantity by quantity. Empty where one of them failed, and of an ablation.
+    /// Agreement of these two, by quantity. Empty if one of them failed, and for an ablation.
     pub agreements: Vec<Agreement>,
     /// Presets, methods and steps.
     pub methods: Vec<CostRow>,
@@ -122,7 +122,7 @@ pub struct CostReport {
 }
 
 impl CostReport {
-    /// How far the reference's two methods agree in a quantity; absent where it was not compared.
+    /// Agreement of the reference's two methods in a quantity; absent if it was not compared.
     pub fn agreement(&self, quantity: Quantity) -> Option<&Agreement> {
         self.agreements.iter().find(|agreement| agreement.quantity == quantity)
     }
@@ -148,7 +148,7 @@ impl CostReport {
     }
 }
 
-/// How far the two methods of a reference agree in one quantity.
+/// Agreement of the two methods of a reference in one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Agreement {
     /// The quantity.
@@ -159,14 +159,14 @@ pub struct Agreement {
     pub half_width: Option<f64>,
     /// Difference up to which they agree.
     pub bound: f64,
-    /// Whether they agree at any node. If not, no reference exists: nothing is said of errors in this quantity. Lines agree where
-    /// both have the same ones at all nodes.
+    /// True if the methods agree at any node. If not, no reference exists: errors in this quantity are not reported. Lines agree if
+    /// both methods have the same ones at all nodes.
     pub has_reference: bool,
     /// Node by node, and of lines, line by line.
     pub nodes: Vec<NodeAgreement>,
 }
 
-/// How far the two methods of a reference agree at one node.
+/// Agreement of the two methods of a reference at one node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeAgreement {
     /// Measured depth of the node \[m\]; absent where the value is the whole string's.
@@ -175,7 +175,7 @@ pub struct NodeAgreement {
     pub values: [f64; 2],
     /// Their relative difference.
     pub difference: f64,
-    /// Whether they agree here. If not, no reference exists for this node, and errors are those of the others.
+    /// True if the methods agree here. If not, no reference exists for this node, and errors are those of the other nodes.
     pub has_reference: bool,
 }
 
@@ -230,7 +230,7 @@ pub struct CostRow {
     pub speed_over_rk4: Option<f64>,
     /// Its errors against the reference; absent if it failed.
     pub errors: Option<CostErrors>,
-    /// Why it failed.
+    /// Reason of the failure.
     pub failure: Option<String>,
 }
 
@@ -285,7 +285,7 @@ pub struct StatisticError {
     pub half_width: Option<f64>,
     /// Standard deviation of the members, relative to the reference; absent with one member.
     pub spread: Option<f64>,
-    /// Whether the interval excludes zero; absent with one member.
+    /// True if the interval excludes zero; absent with one member.
     pub significant: Option<bool>,
     /// Measured depth of the worst node \[m\]; absent where the statistic is the whole string's.
     pub measured_depth: Option<f64>,
@@ -388,7 +388,7 @@ pub struct Recommendation {
     pub text: String,
 }
 
-/// Why there is no study.
+/// Reason for which there is no study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// There is no model.

@@ -20,7 +20,7 @@ const HIGHEST_ORDER: f64 = 4.0;
 /// Lowest order that is believed (as Oberkampf and Roy have it): with less the limit runs away, whatever it is.
 const LOWEST_ORDER: f64 = 0.5;
 
-/// Why orbits need not converge where the wall's stiffness is a node's.
+/// Reason for which orbits need not converge if the wall's stiffness is per node.
 pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are per node, so a finer mesh meets a stiffer wall and need not converge; contact.law = \"per_length\" makes them per length";
 
 /// Looks for the cheapest pair of the report's meshes and methods for a whole error of `wanted`; `base` is the scenario that was run.
@@ -152,7 +152,7 @@ fn doubt(limits: &[MeshLimit]) -> String {
     )
 }
 
-/// Whether the reference resolves errors in time of the wanted size; if not, why.
+/// Checks that the reference resolves errors in time of the wanted size; the error is the reason for which it does not.
 fn reference_is_known(report: &CostReport, wanted: f64) -> Result<(), String> {
     let agreement = report.agreement(Quantity::OrbitSize).filter(|agreement| agreement.has_reference);
     let Some(agreement) = agreement else {

@@ -49,7 +49,7 @@ pub enum Judgement {
 }
 
 impl Judgement {
-    /// Whether the run is wrong by more than it promises and states, and does not say so.
+    /// True if the run is wrong by more than it promises and states, and does not report it.
     pub fn is_silently_wrong(&self) -> bool {
         let Some(promise) = Accuracy::Preset(AccuracyPreset::Standard).promise() else { return false };
         match self {

@@ -1,5 +1,5 @@
-//! How long a list of sweeps takes, and how much memory the service, while clients download histories and the table of a large sweep: over
-//! the network of this machine, a row of the table for each number of clients.
+//! Time of a list of sweeps, and memory of the service, while clients download histories and the table of a large sweep over
+//! the network of this machine: a row of the table for each number of clients.
 //!
 //! `cargo bench -p drillsweep-server --bench downloads`. The clients are in the same process: their memory, 64 KiB each, is counted too.
 
@@ -29,7 +29,7 @@ use tower::ServiceExt;
 /// Numbers of clients that download.
 const CLIENTS: [usize; 4] = [0, 12, 50, 200];
 
-/// How long lists of sweeps are asked for beside them, and what lies between two of them.
+/// Time for which lists of sweeps are requested during the downloads, and the pause between two of them.
 const MEASURED: Duration = Duration::from_secs(20);
 const PAUSE: Duration = Duration::from_millis(5);
 

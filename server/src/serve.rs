@@ -65,7 +65,7 @@ pub enum ServeError {
 /// Serves until `shutdown` completes, then ends long polls and event streams at once and waits for open requests.
 ///
 /// # Errors
-/// When a listener fails, when others could reach the service though no valid token exists, or when requests do not
+/// A listener fails, others could reach the service though no valid token exists, or requests do not
 /// end within [`Config::drain_timeout`].
 pub async fn serve(
     listeners: Listeners,

@@ -22,7 +22,7 @@ impl Snapshots {
     /// Snapshots of a table with a row a node, from the top, snapshot after snapshot; `statics` has a row for each node of the string.
     ///
     /// # Errors
-    /// When there are no snapshots of so many nodes in the table.
+    /// The table's rows are no snapshots of the string's number of nodes.
     pub(crate) fn new(stored: Stored, statics: &Stored) -> Result<Self> {
         let (rows, nodes) = (stored.rows(), statics.rows());
         if nodes == 0 || !rows.is_multiple_of(nodes) {

@@ -77,8 +77,8 @@ pub(crate) fn check(method: &Method, path: &str, body: &[u8], status: StatusCode
     }
 }
 
-/// Whether all that is wrong with a request stands at members whose schema says all that is asked of them: what else is refused could not be
-/// simulated, or contradicts another member.
+/// True if all errors of a request stand at members whose schema states all their bounds. Other refused requests could not be
+/// simulated, or contradict another member.
 fn is_about_form(answer: &[u8]) -> bool {
     const COMPLETE: [&str; 6] = ["/name", "/owner", "/tags", "/priority", "/samples", "/seed"];
     let problem: Value = serde_json::from_slice(answer).unwrap_or_default();
@@ -90,7 +90,7 @@ fn is_about_form(answer: &[u8]) -> bool {
     !errors.is_empty() && errors.iter().all(is_complete)
 }
 
-/// Whether a path is one of a template such as `/v1/sweeps/{id}`.
+/// True if a path is one of a template such as `/v1/sweeps/{id}`.
 fn is_of(path: &str, template: &str) -> bool {
     let path = path.split('?').next().unwrap_or_default();
     let (path, template): (Vec<_>, Vec<_>) = (path.split('/').collect(), template.split('/').collect());

@@ -12,8 +12,8 @@ use crate::string::beam::ElementMatrix;
 
 /// Matrices and constant loads of the transient, tension, torque and mud frozen at the equilibrium.
 ///
-/// Held degrees of freedom have empty rows and columns in every matrix; what they push with at their equilibrium
-/// values is part of the load.
+/// Held degrees of freedom have empty rows and columns in every matrix; their forces at the equilibrium
+/// values are part of the load.
 #[derive(Debug, Clone)]
 pub struct DynamicSystem<const D: usize = DOFS> {
     /// Degrees of freedom of a node that the system has. A system starts with all;
@@ -21,11 +21,11 @@ pub struct DynamicSystem<const D: usize = DOFS> {
     pub freedoms: Dofs<D>,
     /// Mass: structure and added mass of the mud.
     pub mass: BlockTridiagonal<D>,
-    /// Everything that multiplies velocities: Rayleigh damping, gyroscopic, mud damping, Coriolis.
+    /// All that multiplies velocities: Rayleigh damping, gyroscopic terms, mud damping, Coriolis terms.
     pub damping: BlockTridiagonal<D>,
-    /// Everything that multiplies displacements.
+    /// All that multiplies displacements.
     pub stiffness: BlockTridiagonal<D>,
-    /// The parts of `damping` by the account of the energy ledger that their work belongs to, in the order of [`DAMPING`].
+    /// Parts of `damping` by the account of the energy ledger that books their work, in the order of [`DAMPING`].
     damping_of: [BlockTridiagonal<D>; DAMPING.len()],
     /// Constant loads: weight, buoyancy, drag, end loads, less the bending of the pipe into the hole and the forces
     /// of held degrees of freedom.
@@ -42,13 +42,13 @@ impl Model {
         self.system_without(equilibrium, |effect| !self.effects.is_active(effect))
     }
 
-    /// The same with every motion that the scenario does not switch off: that nothing in the scene makes a string move along itself, or
-    /// twist, does not keep it from doing so.
+    /// The same with every motion that the scenario does not switch off. A string can move along itself, or twist, even if nothing in the scenario
+    /// excites it.
     pub fn system_of_all_motions(&self, equilibrium: &Equilibrium) -> DynamicSystem {
         self.system_without(equilibrium, |effect| self.scenario.effects.switch(effect) == Switch::Off)
     }
 
-    /// The equations of motion without the motions of those effects that are `still`.
+    /// The equations of motion without the motions of the effects that are `still`.
     fn system_without(&self, equilibrium: &Equilibrium, still: impl Fn(Effect) -> bool) -> DynamicSystem {
         let n = self.node_count();
         let [mut mass, mut stiffness, mut damping] = std::array::from_fn(|_| BlockTridiagonal::zeros(n));
@@ -131,7 +131,7 @@ impl Model {
 }
 
 impl<const D: usize> DynamicSystem<D> {
-    /// The part of `damping` whose work belongs to an account of the energy ledger.
+    /// Part of `damping` whose work an account of the energy ledger books.
     pub fn damping_of(&self, account: &Account) -> &BlockTridiagonal<D> {
         &self.damping_of[place_of_damping(Some(account))]
     }

@@ -64,7 +64,7 @@ pub struct ElementInput<'a> {
 }
 
 impl StringElement {
-    /// Builds the element; effects that are off are not asked for their terms.
+    /// Builds the element, without terms of effects that are off.
     pub fn new(input: &ElementInput<'_>) -> Self {
         let chord = Chord::between(input.frames[0], input.frames[1]);
         let beam = BeamElement::new(input.section, chord.length);
@@ -114,10 +114,10 @@ impl StringElement {
         }
     }
 
-    /// Loads, on the left-hand side, of tension \[N\] and torque \[N m\] on the slopes of the hole's axis against the chord, T K_s theta0 + T0 K_t theta0
-    /// (docs/model/beam.md, Tension and torque in a curved hole).
+    /// Loads, on the left-hand side, of tension \[N\] and torque \[N m\] on the slopes of the hole's axis against the chord, T K_s theta0 + T0 K_t
+    /// theta0 (docs/model/beam.md, Tension and torque in a curved hole).
     ///
-    /// The chords alone carry the lateral load T kappa as forces at the nodes; this is what makes it a load along the element.
+    /// The chords alone carry the lateral load T kappa as forces at the nodes; these loads distribute it along the element.
     pub fn load_of_slopes(&self, tension: f64, torque: f64) -> ElementVector {
         self.tension_load * tension + self.torque_load * torque
     }

@@ -1,7 +1,7 @@
-//! The model: the string's elements and nodes in the well, and the matrices of the effects in play.
+//! The model: the string's elements and nodes in the well, and the matrices of the active effects.
 //!
-//! A model is built from a scenario and does not change afterwards. What depends on the equilibrium (tension,
-//! torque, friction factors) comes in when the [equations of motion](crate::solve::motion) are assembled from it.
+//! A model is built from a scenario and does not change afterwards. Quantities of the equilibrium (tension,
+//! torque, friction factors) enter when the [equations of motion](crate::solve::motion) are assembled from the model.
 
 mod element;
 
@@ -146,7 +146,7 @@ impl Model {
         }
     }
 
-    /// Constant nodal loads, those of weight and torque on bit included, with the mud's drag \[N/m\] on every element (empty where there is none).
+    /// Constant nodal loads, including weight, torque on bit and the mud's drag \[N/m\] on every element (empty without drag).
     pub fn constant_load(&self, drag: &[f64]) -> NodalVector {
         let mut load = vec![[0.0; DOFS]; self.node_count()];
         for (e, element) in self.elements.iter().enumerate() {

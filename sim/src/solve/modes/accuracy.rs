@@ -35,8 +35,8 @@ impl<'a> Accuracy<'a> {
 
     /// Judges a pair by its residual `r = (l^2 M + l C + K) x`.
     ///
-    /// A residual resolves no more than the rounding of its products allows: of `K x` of a smooth shape on a fine mesh, or at a stiff wall,
-    /// next to nothing is left but rounding. The residual is therefore allowed a multiple of machine precision times
+    /// The rounding of its products limits a residual: `K x` of a smooth shape on a fine mesh, or at a stiff wall,
+    /// is hardly more than rounding. The residual is therefore allowed a multiple of machine precision times
     /// `(|l|^2 |M| + |l| |C| + |K|) |x|`, its backward error by components (Oettli and Prager 1964; Higham and Higham 1998 for eigenvalues,
     /// Tisseur 2000 for quadratic ones), in the norm that scales every row and column by the root of its diagonal entry: entries of stiffness
     /// differ by ten orders of magnitude between bending, axial motion and contact.

@@ -5,11 +5,11 @@
 //! (Tisseur and Meerbergen 2001, section 5). Two start vectors find the pairs of nearly equal eigenvalues that a round string has in its
 //! two planes.
 //!
-//! faer's `matrix_free::eigen::partial_eigen` (0.24) solves the same problem, and agrees to 1e-10 in about the same time (55 to 74 ms a shift, where
-//! this takes 54 to 60, with 80 applications of the inverse at 297 nodes). It starts from one vector, though: of a round beam's pairs of
-//! equal eigenvalues it missed one or two among 20 to 34 at three of four shifts when asked for 1e-12. It gives neither residuals nor
-//! what has not converged, so that no radius can be stated within which nothing is missing. The projected matrix stays with nalgebra's
-//! complex Schur decomposition, too: 60 ms at 160 rows, where faer's takes 98.
+//! faer's `matrix_free::eigen::partial_eigen` (0.24) solves the same problem, and agrees to 1e-10 in about the same time (55 to 74 ms a shift;
+//! this module takes 54 to 60, with 80 applications of the inverse at 297 nodes). It starts from one vector, though: of a round beam's pairs of
+//! equal eigenvalues it missed one or two among 20 to 34 at three of four shifts, at a tolerance of 1e-12. It returns neither residuals nor
+//! the eigenvalues that did not converge, so that no radius can be stated within which nothing is missing. The projected matrix stays with nalgebra's
+//! complex Schur decomposition, too: 60 ms at 160 rows; faer's takes 98.
 
 use nalgebra::{Complex, DMatrix, Schur};
 
@@ -39,12 +39,12 @@ pub(super) struct Eigenpair {
 pub(super) struct Neighbourhood {
     /// The converged ones without a gap, nearest first.
     pub(super) pairs: Vec<Eigenpair>,
-    /// Every eigenvalue nearer to the shift than this is among them \[1/s\].
+    /// Radius \[1/s\]: every eigenvalue nearer to the shift is among the pairs.
     pub(super) radius: f64,
 }
 
-/// Finds the eigenvalues around `shift` in a Krylov space of `dimension` from the start vectors of number `start`: where more eigenvalues
-/// are equal than there are start vectors, others find the rest. `None` where the shift is an eigenvalue itself or the iteration breaks
+/// Finds the eigenvalues around `shift` in a Krylov space of `dimension` from the start vectors of number `start`: if more eigenvalues
+/// are equal than there are start vectors, others find the rest. `None` if the shift is an eigenvalue itself or the iteration breaks
 /// down.
 pub(super) fn around(
     shift: Complex<f64>,
@@ -71,7 +71,7 @@ pub(super) fn around(
             return None;
         }
         projected[(basis.len(), step)] = Complex::new(left, 0.0);
-        // A space that is exhausted goes on with nothing.
+        // An exhausted space continues with zeros.
         let factor = if left > 1e-14 * before { 1.0 / left } else { 0.0 };
         next.iter_mut().for_each(|value| *value *= factor);
         basis.push(next);

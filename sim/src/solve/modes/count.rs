@@ -1,8 +1,8 @@
 //! Number of eigenvalues in a region: the winding number of the determinant along its edge.
 //!
-//! det Q(l) is analytic, so that its phase turns once around the edge for every eigenvalue inside (the argument principle). What is followed
-//! is the determinant divided by (l - l_k) for the eigenvalues that are known, inside and outside: its phase turns once for every one that
-//! is not known, and is smooth where there is none near the edge, so that few factorisations follow it.
+//! det Q(l) is analytic, so that its phase turns once around the edge for every eigenvalue inside (the argument principle). The count follows
+//! the determinant divided by (l - l_k) for the eigenvalues that are known, inside and outside: its phase turns once for every unknown
+//! eigenvalue, and is smooth if none lies near the edge, so that few factorisations follow it.
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -16,11 +16,11 @@ use super::shifted::ShiftedPencil;
 /// a phase that turned by whole turns in each of them would have to do so in proportion to all of them.
 const PLACES: [f64; 5] = [0.0, 0.2099, 0.5067, 0.6364, 1.0];
 
-/// By how much the phase may turn between two of these places \[rad\].
+/// Largest turn of the phase between two of these places \[rad\].
 const SMALL_TURN: f64 = 1.0;
 
-/// By how much the steps of phase \[rad\] and of the logarithm of the size may differ from one place to the next, in proportion to their
-/// lengths, where the edge has been followed. Two unknown zeros next to the edge, a whole turn between two places, show in the size at
+/// Largest difference of the steps of phase \[rad\] and of the logarithm of the size from one place to the next, in proportion to their
+/// lengths, at which the edge counts as followed. Two unknown zeros next to the edge, a whole turn between two places, show in the size at
 /// the others.
 const STRAIGHT: f64 = 0.5;
 
@@ -53,7 +53,7 @@ impl Region {
 /// Counts eigenvalues of a pencil.
 pub(super) struct Counter<'a> {
     pencil: &'a Pencil,
-    /// Logarithms of the determinant by the bits of the point; absent where it is zero.
+    /// Logarithms of the determinant by the bits of the point; absent if the determinant is zero.
     determinants: HashMap<[u64; 2], Option<Complex<f64>>>,
     left: usize,
 }
@@ -63,7 +63,7 @@ impl<'a> Counter<'a> {
         Self { pencil, determinants: HashMap::new(), left: MOST_FACTORS }
     }
 
-    /// The number of eigenvalues in a region beyond [those](Region::holds) of `known`. `None` where the edge runs into an eigenvalue or cannot be followed.
+    /// Number of eigenvalues in a region beyond [those](Region::holds) of `known`. `None` if the edge runs into an eigenvalue or cannot be followed.
     pub(super) fn beyond(&mut self, known: &[Complex<f64>], region: &Region) -> Option<i64> {
         let ([low, high], [from, to]) = (region.growth, region.frequency);
         let mut corners = vec![(high, from), (high, to), (low, to), (low, from)];
@@ -80,7 +80,7 @@ impl<'a> Counter<'a> {
         Some((turned / whole_turn).round() as i64)
     }
 
-    /// By how much the phase turns along a line.
+    /// Turn of the phase along a line.
     fn along(
         &mut self,
         known: &[Complex<f64>],
@@ -195,7 +195,7 @@ mod tests {
                 let found = Counter::new(&pencil).beyond(&values[..known], &region);
                 assert_eq!(found, Some(expected as i64), "{known} known of {frequency:?}");
             }
-            // What is known and is none counts the other way.
+            // A known value that is no eigenvalue counts the other way.
             let wrong = [&values[..], &[Complex::new(0.0, 0.5 * (frequency[0] + frequency[1]))]].concat();
             let found = Counter::new(&pencil).beyond(&wrong, &region).expect("counted");
             assert_eq!(found, if frequency[0] == 0.0 { -2 } else { -1 }, "{frequency:?}");

@@ -2,9 +2,9 @@
 //!
 //! The equations of motion are linearised about the equilibrium with its contacts closed and sliding at the speed of rotation
 //! ([`Pencil`]): normal stiffness and damping of the wall, friction's direction and the slope of its curve, mud damping,
-//! Coriolis and flow stiffness, gyroscopic terms. What grows here grows in a run until contact or sliding limits it. Eigenvalues
-//! are found around shifts that walk along the imaginary axis, and counted by the winding number of the determinant around the band: what was
-//! found is complete where it is as much as was counted.
+//! Coriolis and flow stiffness, gyroscopic terms. A mode that grows here grows in a run until contact or sliding limits it. Eigenvalues
+//! are found around shifts that walk along the imaginary axis, and counted by the winding number of the determinant around the band: the
+//! list is complete if its length is the count.
 
 mod accuracy;
 mod arnoldi;

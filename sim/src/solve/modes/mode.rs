@@ -38,8 +38,8 @@ impl Default for ModeSearch {
 pub struct Modes {
     /// The modes, by frequency.
     pub modes: Vec<Mode>,
-    /// Up to this frequency \[Hz\] modes were searched for, and none is left out whose growth or decay is below `complete_to_rate` where
-    /// `completeness` is [`Completeness::Counted`].
+    /// Frequency \[Hz\] up to which modes were searched for. If `completeness` is [`Completeness::Counted`], no mode is missing whose growth or
+    /// decay is below `complete_to_rate`.
     pub complete_to_hz: f64,
     /// See `complete_to_hz` \[1/s\].
     pub complete_to_rate: f64,
@@ -52,13 +52,13 @@ pub struct Modes {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Completeness {
-    /// As many were found as there are.
+    /// The number found is the number counted.
     Counted,
     /// Number of eigenvalues not found, conjugate ones and overdamped motions included if the band begins at 0 Hz.
     Missing(usize),
-    /// Number of eigenvalues found beyond those there are: some are not modes.
+    /// Number of eigenvalues found beyond the number counted: some are not modes.
     Excess(usize),
-    /// They could not be counted.
+    /// The eigenvalues could not be counted.
     NotCounted,
 }
 
@@ -115,7 +115,7 @@ pub enum ModeKind {
 }
 
 impl ModeKind {
-    /// The name on the wire.
+    /// The name in requests and responses.
     pub fn name(self) -> &'static str {
         match self {
             ModeKind::Forward => "forward",

@@ -12,9 +12,9 @@ use crate::solve::statics::Equilibrium;
 pub struct Pencil {
     /// Mass.
     pub mass: BlockTridiagonal,
-    /// Damping, Coriolis and gyroscopic terms, and what closed contacts add.
+    /// Damping, Coriolis and gyroscopic terms, and the damping of closed contacts.
     pub damping: BlockTridiagonal,
-    /// Stiffness, and what closed contacts add.
+    /// Stiffness, with that of closed contacts.
     pub stiffness: BlockTridiagonal,
     /// Degrees of freedom that do not move; their rows and columns are empty.
     pub held: Vec<[bool; DOFS]>,
@@ -34,8 +34,8 @@ impl Pencil {
         Self { mass, damping, stiffness, held }
     }
 
-    /// Small motions of a model about its equilibrium, contacts closed there staying closed and sliding at the speed of rotation. All degrees of
-    /// freedom move but those of motions that the scenario switches off, also where a run in time would not solve for them.
+    /// Small motions of a model about its equilibrium: contacts closed there stay closed and slide at the speed of rotation. All degrees of
+    /// freedom move but those of motions that the scenario switches off, even if a run in time would not solve for them.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Self {
         let system = model.system_of_all_motions(equilibrium);
         let (mut damping, mut stiffness) = (system.damping, system.stiffness);
@@ -58,7 +58,7 @@ impl Pencil {
     }
 }
 
-/// Adds what the closed contacts of an equilibrium do to stiffness and damping.
+/// Adds stiffness and damping of the closed contacts of an equilibrium.
 pub(super) fn add_contact(
     model: &Model,
     equilibrium: &Equilibrium,

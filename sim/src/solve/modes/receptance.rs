@@ -20,7 +20,7 @@ pub struct Receptance<'a> {
 }
 
 impl<'a> Receptance<'a> {
-    /// Of small motions at a frequency \[Hz\]; `None` at an undamped resonance.
+    /// Receptance of small motions at a frequency \[Hz\]; `None` at an undamped resonance.
     pub fn of(pencil: &'a Pencil, frequency_hz: f64) -> Option<Self> {
         let shift = Complex::new(0.0, TAU * frequency_hz);
         let factor = ShiftedPencil::new(shift, pencil.matrices(), &pencil.held)?;

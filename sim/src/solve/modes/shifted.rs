@@ -15,20 +15,20 @@ use crate::math::linalg::{BlockTridiagonal, DOFS};
 /// `s^2 M + s C + K` with rows exchanged for the largest pivot. The time-stepping factor has no exchanges across nodes; far above
 /// the lowest frequencies this matrix is indefinite and needs them.
 ///
-/// By faer's simplicial LU, column by column in the order of the nodes: a banded factor of our own with the same exchanges took 0.47 ms
-/// where this takes 1.4 ms, and 0.071 ms a solve where this takes 0.060, which comes to the same for a factor and its 80 solves (6.2 and
+/// By faer's simplicial LU, column by column in the order of the nodes. A banded factor of our own with the same exchanges took 0.47 ms
+/// instead of 1.4 ms, and 0.071 ms a solve instead of 0.060, which is equal for a factor and its 80 solves (6.2 and
 /// 6.3 ms at 297 nodes on one core of a 2.6 GHz EPYC). The COLAMD order makes it 6.0 ms, supernodes 9.3 ms. This variant calls no dense
 /// kernel, whose sums would be split by the caches and vector registers of the machine.
 pub(super) struct ShiftedPencil {
     lu: SimplicialLu<usize, Complex<f64>>,
     /// Order of the rows after their exchanges.
     rows: Perm<usize>,
-    /// Order of the columns: as they are.
+    /// Order of the columns: unchanged.
     columns: Perm<usize>,
 }
 
 impl ShiftedPencil {
-    /// Factors the pencil at `shift`; `held` degrees of freedom get a unit diagonal. `None` where the shift is an
+    /// Factors the pencil at `shift`; `held` degrees of freedom get a unit diagonal. `None` if the shift is an
     /// eigenvalue to working precision or a value is not finite.
     pub(super) fn new(
         shift: Complex<f64>,

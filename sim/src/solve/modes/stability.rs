@@ -16,13 +16,13 @@ use crate::math::linalg::BlockTridiagonal;
 use crate::solve::model::{Model, add_element_matrix, clear_held};
 use crate::solve::statics::{Equilibrium, negative_eigenvalues};
 
-/// Band in which the verdict looks for growth \[Hz\]: the frequencies of drilling vibrations.
+/// Band in which the verdict searches for growth \[Hz\]: the frequencies of drilling vibrations.
 const BAND_HZ: f64 = 20.0;
 
 /// Growth \[1/s\] below which a mode counts as neither growing nor decaying.
 const NEUTRAL: f64 = 1e-6;
 
-/// Natural logarithm of the growth from which on an unstable mode can be why a run diverged: twentyfold, from a string that vibrates by all of its
+/// Natural logarithm of the growth from which an unstable mode can explain that a run diverged: twentyfold, from a string that vibrates by all of its
 /// clearance, some centimetres, to two hole radii. Vibrations about the equilibrium are smaller and need longer.
 const EXPLAINING_GROWTH: f64 = 3.0;
 
@@ -31,22 +31,22 @@ const EXPLAINING_GROWTH: f64 = 3.0;
 pub struct Stability {
     /// True if all modes decay; absent if none was found to grow and the search is not known to be complete.
     pub stable: Option<bool>,
-    /// The frequency \[Hz\] up to which modes were looked at.
+    /// Frequency \[Hz\] up to which modes were searched for.
     pub complete_to_hz: f64,
     /// Result of the count that verifies that all modes up to that frequency were found.
     pub completeness: Completeness,
-    /// The mode that grows fastest; absent where the scene is stable.
+    /// The mode that grows fastest; absent if the scenario is stable.
     pub instability: Option<Instability>,
 }
 
-/// The mode that grows fastest, and what feeds it.
+/// The mode that grows fastest, with the source of its energy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Instability {
     /// Its kind.
     pub kind: InstabilityKind,
     /// Growth of its amplitude \[1/s\].
     pub growth_rate: f64,
-    /// Its frequency \[Hz\]; 0 where it does not vibrate.
+    /// Its frequency \[Hz\]; 0 if it does not vibrate.
     pub frequency_hz: f64,
     /// Node that moves most, from 1 at the top.
     pub node: usize,
@@ -56,7 +56,7 @@ pub struct Instability {
     pub growing_modes: usize,
 }
 
-/// Kinds of instability, by what puts energy into the mode and how it moves.
+/// Kinds of instability, by the source of the mode's energy and its motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InstabilityKind {
@@ -66,11 +66,11 @@ pub enum InstabilityKind {
     TorqueBuckling,
     /// The momentum of the flows pushes the string aside.
     FlowDivergence,
-    /// The flows feed a vibration.
+    /// The flows excite a vibration.
     FlowFlutter,
-    /// Friction at the wall feeds a lateral vibration: dry-friction whirl.
+    /// Friction at the wall excites a lateral vibration: dry-friction whirl.
     FrictionWhirl,
-    /// Friction that falls with speed feeds torsion: stick-slip.
+    /// Velocity-weakening friction excites torsion: stick-slip.
     StickSlip,
     /// Anything else.
     Other,
@@ -130,7 +130,7 @@ impl Stability {
         self.instability.is_some_and(|unstable| unstable.growth_rate * time >= EXPLAINING_GROWTH)
     }
 
-    /// The verdict on a run that diverged after `time` \[s\], in words: by which instability, or that none explains it.
+    /// The verdict on a run that diverged after `time` \[s\], in words: the instability that explains it, or that none does.
     pub fn of_divergence_at(&self, time: f64) -> String {
         match &self.instability {
             Some(_) if self.explains_divergence_at(time) => self.to_string(),
@@ -157,14 +157,14 @@ pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, 
 /// The verdict on an equilibrium that the string leaves without vibrating about it, such as that of a buckled string on the hole's axis;
 /// `None` if there is no such motion.
 ///
-/// It takes a few milliseconds unless the stiffness is negative in some direction; only then the lowest modes, some tens of them and what
-/// grows without vibrating, are found. They are not counted, and never show that all modes decay.
+/// It takes a few milliseconds unless the stiffness is negative in some direction; only then the lowest modes, some tens of them, and the modes that
+/// grow without vibrating are found. They are not counted, so that they never show that all modes decay.
 pub fn static_stability(model: &Model, equilibrium: &Equilibrium) -> Option<Stability> {
     if negative_directions(model, equilibrium) == 0 {
         return None;
     }
     let pencil = Pencil::about(model, equilibrium);
-    // One mode ends the search after its first shift, which yields all that are as low.
+    // One mode ends the search after its first shift, which yields all modes as low as that.
     let search = ModeSearch { to_hz: BAND_HZ, most: 1, ..ModeSearch::default() };
     let found = uncounted_eigenpairs(&pencil, &search).ok()?;
     let leaving = found.in_band(&search).filter(|pair| does_not_vibrate(pair));
@@ -172,14 +172,14 @@ pub fn static_stability(model: &Model, equilibrium: &Equilibrium) -> Option<Stab
     verdict.instability.is_some().then_some(verdict)
 }
 
-/// Number of directions in which the stiffness of the equilibrium is negative, its contacts closed and without friction: friction makes the
-/// stiffness of a contact unsymmetric, so that its symmetric part is next to always negative in some direction, and what it feeds vibrates.
+/// Number of directions in which the stiffness of the equilibrium is negative, its contacts closed and without friction. Friction makes the
+/// stiffness of a contact unsymmetric, so that its symmetric part is almost always negative in some direction; modes that friction excites vibrate.
 fn negative_directions(model: &Model, equilibrium: &Equilibrium) -> usize {
     let system = model.system_of_all_motions(equilibrium);
     let mut stiffness = system.stiffness;
     for (node, site) in model.wall.touchable() {
         let [u, v, ..] = equilibrium.displacement[node];
-        // Nothing rubs without a sliding speed.
+        // Without a sliding speed there is no friction.
         let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, 0.0) else { continue };
         for (row, entries) in [U, V].into_iter().zip(tangent.stiffness) {
             for (column, entry) in [U, V].into_iter().zip(entries) {
@@ -224,7 +224,7 @@ impl Stability {
         }
     }
 
-    /// In words, that the string leaves its equilibrium; `None` if no motion was found to grow.
+    /// Warning, in words, that the string leaves its equilibrium; `None` if no motion was found to grow.
     pub fn warning(&self) -> Option<String> {
         let unstable = self.instability?;
         Some(format!(
@@ -241,7 +241,7 @@ fn does_not_vibrate(pair: &Eigenpair) -> bool {
     pair.value.im < pair.value.re
 }
 
-/// Kind of a growing mode, by what puts most energy into it.
+/// Kind of a growing mode, by the largest source of its energy.
 fn kind(
     model: &Model,
     equilibrium: &Equilibrium,

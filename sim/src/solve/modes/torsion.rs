@@ -1,9 +1,9 @@
 //! Torsional modes that velocity-weakening friction excites, up to the frequency at which damping or the mesh ends them.
 //!
-//! Friction that falls with speed is a negative damper at every node that slides. It feeds torsion at all frequencies alike; only a
-//! damping that grows with frequency (`damping.stiffness_proportional`) ends it. Without one, modes grow up to the highest frequency of
-//! the mesh, and mesh and step decide which of them survive. This looks at twist alone, a chain of shafts from the clamped top to the
-//! free bit, about the equilibrium with its contacts closed and sliding at the speed of rotation: some ten milliseconds, where
+//! Velocity-weakening friction is a negative damper at every sliding node. It excites torsion at all frequencies alike; only
+//! damping that grows with frequency (`damping.stiffness_proportional`) limits it. Without such damping, modes grow up to the highest frequency of
+//! the mesh, and mesh and step decide which of them survive. This module solves for twist alone, a chain of shafts from the clamped top to the
+//! free bit, about the equilibrium with its contacts closed and sliding at the speed of rotation. It takes some ten milliseconds;
 //! [`modes`](super::modes()) takes seconds for the whole spectrum.
 
 use std::f64::consts::TAU;
@@ -16,34 +16,34 @@ use crate::force::contact::{sliding_segment, sliding_tangent};
 use crate::solve::model::{Model, element_values};
 use crate::solve::statics::Equilibrium;
 
-/// Nodes up to which all modes are looked at; of longer chains those below the frequency above which all decay.
+/// Nodes up to which all modes are computed; of longer chains only the modes below the frequency above which all decay.
 const MOST_NODES: usize = 700;
 
-/// Nodes times modes that are looked at: some tenths of a second.
+/// Nodes times modes that are computed: some tenths of a second.
 const MOST_VALUES: usize = 2_000_000;
 
 /// Relative width to which an eigenvalue is enclosed: far below the distance of neighbours.
 const ENCLOSED: f64 = 1e-9;
 
-/// Share of the mesh's highest frequency from which a growing mode counts as one that the mesh ends.
+/// Share of the mesh's highest frequency from which a growing mode counts as limited by the mesh alone.
 const MESH_END: f64 = 0.75;
 
-/// Steps in a period with which the reference resolves a mode: no method here damps it as fast as friction feeds it.
+/// Steps in a period with which the reference resolves a mode: no method here damps it as fast as friction excites it.
 const STEPS_OF_A_PERIOD: f64 = 20.0;
 
-/// The torsional modes that velocity-weakening friction feeds, to first order in damping.
+/// The torsional modes that velocity-weakening friction excites, to first order in damping.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct UndampedTorsion {
     /// Torsional modes of the mesh.
     pub modes: usize,
-    /// Those that grow; absent if the string has too many modes that may grow to look at each.
+    /// Number of growing modes; absent if too many modes may grow to compute each.
     pub growing_modes: Option<usize>,
-    /// Frequency of the highest mode that grows \[Hz\]; absent where none does. Without `growing_modes` the frequency above which all decay,
+    /// Frequency of the highest growing mode \[Hz\]; absent if none grows. Without `growing_modes`, the frequency above which all decay,
     /// at most the mesh's highest.
     pub highest_hz: Option<f64>,
-    /// Growth of the highest mode's amplitude that grows \[1/s\]; absent where none does, or without `growing_modes`.
+    /// Growth of the highest growing mode's amplitude \[1/s\]; absent if none grows, or without `growing_modes`.
     pub highest_growth: Option<f64>,
-    /// The largest growth of any mode that is looked at \[1/s\], negative where all decay; without `growing_modes` a bound.
+    /// Largest growth of any computed mode \[1/s\], negative if all decay; without `growing_modes` a bound.
     pub largest_growth: f64,
     /// Highest torsional frequency of the mesh \[Hz\]; without `growing_modes` a bound.
     pub mesh_hz: f64,
@@ -61,17 +61,17 @@ pub struct TorsionalMode {
 }
 
 impl UndampedTorsion {
-    /// The assessment of a model about its equilibrium; `None` where twist is not solved for or friction does not turn the string.
+    /// The assessment of a model about its equilibrium; `None` if twist is not solved for or friction does not turn the string.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         Chain::about(model, equilibrium).map(|chain| chain.assessment())
     }
 
-    /// The longest step \[s\] that resolves what grows; absent where nothing does.
+    /// The longest step \[s\] that resolves the growing modes; absent if none grows.
     pub fn resolving_step(&self) -> Option<f64> {
         self.highest_hz.map(|highest| 1.0 / (STEPS_OF_A_PERIOD * highest))
     }
 
-    /// In words, that what grows is not what a run that resolves vibrations up to `resolved_hz` \[Hz\] can tell; `None` where it is.
+    /// Warning, in words, that modes grow beyond the vibrations that a run resolves, up to `resolved_hz` \[Hz\]; `None` if the run resolves them.
     pub fn warning(&self, resolved_hz: f64) -> Option<String> {
         let highest = self.highest_hz?;
         if self.up_to_the_mesh {
@@ -133,7 +133,7 @@ struct Chain {
     stiffness: Vec<f64>,
     /// Stiffness between a node and the next (negative).
     stiffness_to_next: Vec<f64>,
-    /// Damping added by sliding friction at each node \[N m s\]; negative where it feeds.
+    /// Damping added by sliding friction at each node \[N m s\]; negative if friction excites torsion.
     rubbing: Vec<f64>,
     /// alpha \[1/s\] and beta \[s\] of Rayleigh damping.
     rayleigh: [f64; 2],
@@ -200,7 +200,7 @@ impl Chain {
         let modes = if nodes <= MOST_NODES {
             self.modes()
         } else {
-            // None above grows.
+            // No mode above grows.
             let highest = (TAU * bound.highest_hz.unwrap_or(0.0)).powi(2);
             if self.below(highest) * nodes > MOST_VALUES {
                 return bound;
@@ -226,7 +226,7 @@ impl Chain {
     }
 
     /// Bounds from the nodes one by one. The inertia matrix is at least half of its diagonal (an element's own is a sixth of
-    /// (2 1; 1 2), whose smallest eigenvalue is 1), so no mode is fed by more than the node that is fed most, over half its inertia.
+    /// (2 1; 1 2), whose smallest eigenvalue is 1), so no mode is excited by more than the node with most excitation, over half its inertia.
     fn bound(&self) -> UndampedTorsion {
         let [alpha, beta] = self.rayleigh;
         let nodes = || self.inertia.iter().zip(&self.rubbing);
@@ -417,7 +417,7 @@ mod tests {
 
     #[test]
     fn what_grows_does_not_depend_on_the_number_of_nodes() {
-        // Elements a quarter as long: 1184 of them, of which the modes that decay in any case are not looked at.
+        // Elements a quarter as long: 1184 of them. Modes that decay in any case are not computed.
         let mut scenario = preset("paper-200m-damped").unwrap();
         let found = |scenario: &Scenario| {
             let model = Model::new(scenario).unwrap();

@@ -1,4 +1,4 @@
-//! The eigenvalues of a band of frequencies: found around shifts that walk along the imaginary axis, counted, and searched again where
+//! The eigenvalues of a band of frequencies: found around shifts that walk along the imaginary axis, counted, and searched again if
 //! the list and the count differ.
 
 use std::f64::consts::TAU;
@@ -11,13 +11,13 @@ use super::count::{Counter, Region};
 use super::mode::{Completeness, ModeSearch, ModesError};
 use super::pencil::Pencil;
 
-/// Size of the Krylov space of one shift to begin with.
+/// Initial size of the Krylov space of one shift.
 const DIMENSION: usize = 80;
 
-/// The largest it may become where eigenvalues are dense.
+/// Largest size of that space, for dense eigenvalues.
 const LARGEST_DIMENSION: usize = 320;
 
-/// Half the step between two shifts over the radius in which all eigenvalues are known: what lies between two shifts is found up
+/// Half the step between two shifts over the radius in which all eigenvalues are known: eigenvalues between two shifts are found up
 /// to a growth of 0.7 radii.
 const OVERLAP: f64 = 0.7;
 
@@ -27,7 +27,7 @@ const REAL_SHIFTS: [f64; 2] = [1.0, 4.0];
 /// Growth up to which eigenvalues are counted, in highest circular frequencies of the band.
 const COUNTED_GROWTH: f64 = 2.0;
 
-/// Halvings of the band in search of what is missing.
+/// Halvings of the band in the search for missing eigenvalues.
 const MOST_HALVINGS: u32 = 6;
 
 /// Distance beyond the band at which its edge may lie, in the radius in which eigenvalues are known: there should be none next to the edge.
@@ -35,18 +35,18 @@ const MARGIN: f64 = 0.3;
 
 /// Findings of a walk over a band.
 pub(super) struct Found {
-    /// All that are known, in the band and beyond, by frequency; those of negative frequency are their conjugates.
+    /// All known eigenpairs, in the band and beyond, by frequency; those of negative frequency are their conjugates.
     pairs: Vec<Eigenpair>,
     /// Circular frequency up to which the walk has come \[1/s\].
     pub(super) complete_to: f64,
-    /// Growth and decay up to which it looked \[1/s\].
+    /// Growth and decay up to which the walk searched \[1/s\].
     pub(super) rate: f64,
     /// Verdict of the count on that.
     pub(super) completeness: Completeness,
 }
 
 impl Found {
-    /// The modes of the band: what vibrates, and what grows without.
+    /// The modes of the band: all that vibrate, and those that grow without vibrating.
     pub(super) fn in_band(&self, search: &ModeSearch) -> impl Iterator<Item = &Eigenpair> + Clone {
         let band = TAU * search.from_hz..=TAU * search.to_hz;
         self.pairs
@@ -130,7 +130,7 @@ impl<'a> Walk<'a> {
                 .ok_or(missing)?;
             let reach = OVERLAP * radius;
             if centre - reach > self.found.complete_to {
-                // Denser than thought: come back nearer, at last with a larger space.
+                // Denser than expected: come back nearer, at last with a larger space.
                 ahead = 0.5 * reach;
                 if reach < 1e-4 * (to - from) {
                     self.enlarge().ok_or(missing)?;
@@ -153,13 +153,13 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// A larger Krylov space for the shifts that follow; `None` where it may not grow further.
+    /// A larger Krylov space for the shifts that follow; `None` if it may not grow further.
     fn enlarge(&mut self) -> Option<()> {
         self.dimension = Some(2 * self.dimension).filter(|&dimension| dimension <= LARGEST_DIMENSION)?;
         Some(())
     }
 
-    /// Takes in what is found around a shift, and returns the radius within which that is all; `None` as [`around`].
+    /// Takes in the eigenpairs around a shift, and returns the radius within which they are complete; `None` as [`around`].
     fn around(&mut self, shift: Complex<f64>, start: u64) -> Option<f64> {
         let near = around(shift, self.pencil, self.dimension, start)?;
         for pair in near.pairs {
@@ -168,7 +168,7 @@ impl<'a> Walk<'a> {
         Some(near.radius)
     }
 
-    /// Takes in what is new and true to the equation of motion.
+    /// Takes in a pair that is new and satisfies the equation of motion.
     fn take(&mut self, mut pair: Eigenpair) {
         let Eigenpair { value, shape } = &mut pair;
         if !value.norm().is_finite() {
@@ -211,7 +211,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Counts the eigenvalues of the band as far as the walk has come, and searches again where some are missing.
+    /// Counts the eigenvalues of the band as far as the walk has come, and searches again if some are missing.
     fn count(&mut self) -> Completeness {
         let top = self.found.complete_to.min(self.to);
         if top <= self.from {
@@ -243,8 +243,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Searches a region of `total` eigenvalues until as many are known, from its middle with other start vectors and then in halves; returns
-    /// how many are missing still.
+    /// Searches a region of `total` eigenvalues until all are known, from its middle with other start vectors and then in halves; returns
+    /// the number still missing.
     fn find_missing(&mut self, region: &Region, total: i64, halvings: u32) -> i64 {
         let missing = total - region.holds(&self.found.values());
         if missing <= 0 {
@@ -260,7 +260,7 @@ impl<'a> Walk<'a> {
         if missing <= 0 || halvings == 0 {
             return missing;
         }
-        // Apart from what is known, in the middle half.
+        // Away from known eigenvalues, in the middle half.
         let quarter = 0.25 * (top - bottom);
         let middle = bottom + quarter..=top - quarter;
         let mut stops: Vec<f64> =

@@ -12,12 +12,12 @@ use crate::solve::step::state::State;
 use crate::solve::step::work::Work;
 use crate::solve::step::{EnergyRow, SweepMonitor, TransientError};
 
-/// Everything that changes during a run and is not scratch.
+/// State of a run without its scratch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress<const D: usize> {
-    /// Ticks of the grid that are behind.
+    /// Ticks of the grid completed.
     pub(super) ticks: u64,
-    /// The level of step that is wanted next.
+    /// Wanted level of the next step.
     pub(super) level: u32,
     /// The highest level that the energy ledger allows.
     pub(super) ceiling: u32,
@@ -35,17 +35,17 @@ pub(super) struct Progress<const D: usize> {
     pub(super) energy: Vec<EnergyRow>,
     /// Motion that shows whether the run has settled.
     pub(super) course: Course,
-    /// Places to set the run's twin off from, with their ticks, the earliest first: at the start of a fixed orbit window, or every ten seconds of the longest
-    /// that a settled one may have.
+    /// Starts of the run's twin, with their ticks, the earliest first: at the start of a fixed orbit window, or every ten seconds of the longest
+    /// settled one.
     pub(super) twin_starts: Vec<(u64, Checkpoint)>,
 }
 
-/// Everything that a suspended run needs to go on to the same bits, but the samples that it has recorded: whoever keeps those keeps both.
+/// State from which a suspended run continues to the same bits, without its recorded samples: the caller keeps both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     physics_version: u32,
     scenario: String,
-    /// Progress of as many degrees of freedom as the scenario solves for, encoded.
+    /// Encoded progress, for the degrees of freedom that the scenario solves for.
     progress: Vec<u8>,
 }
 
@@ -91,7 +91,7 @@ impl Checkpoint {
         Ok(postcard::from_bytes(bytes)?)
     }
 
-    /// Progress that it holds, if it is of this scenario and of a string of `nodes` nodes.
+    /// The progress in it, if it is of this scenario and of a string of `nodes` nodes.
     pub(super) fn progress_for<const D: usize>(
         &self,
         scenario: &Scenario,

@@ -15,9 +15,9 @@ pub struct ContactStatistics {
     /// Largest normal force \[N\]: at ends of steps and, by the implicit methods, in their stages.
     pub largest_normal_force: f64,
     /// Time integral of the normal force over the scenario's fixed [orbit window](drillsweep_scenario::Scenario::orbit_window) \[N s\]; 0
-    /// where the window is settled, and so not known during the run.
+    /// if the window is settled, and so not known during the run.
     pub impulse: f64,
-    /// Number of captures: how often the node came to stick, sliding slower than the reference speed of friction.
+    /// Number of slip-to-stick transitions: the node comes to slide slower than the reference speed of friction.
     pub capture_count: u64,
     /// Time that it stuck \[s\].
     pub stick_time: f64,

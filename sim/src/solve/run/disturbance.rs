@@ -6,7 +6,7 @@ use crate::solve::model::{Model, NodalVector};
 /// Largest lateral displacement by which a member is disturbed at its start \[m\].
 pub const DISTURBANCE: f64 = 1e-6;
 
-/// Half waves along the string that a disturbance is made of: smooth, so that it starts no vibration of its own.
+/// Number of half waves along the string in a disturbance: it is smooth, so that it starts no vibration of its own.
 const HALF_WAVES: usize = 6;
 
 /// Displacements added at the start of a member: none for member 0, and for each other one its own

@@ -1,4 +1,4 @@
-//! Histories of the recorded nodes: a block of them as a run makes it, and all of them wherever they are kept.
+//! Histories of the recorded nodes: a block of them from a run, and all of them, wherever they are kept.
 
 use std::borrow::Cow;
 use std::convert::Infallible;

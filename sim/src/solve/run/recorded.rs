@@ -2,12 +2,12 @@
 
 use crate::solve::model::Model;
 
-/// The nodes whose histories a scenario wants, from 0.
+/// The nodes whose histories a scenario requests, from 0.
 pub fn recorded_nodes(model: &Model) -> Vec<usize> {
     model.scenario.recording.nodes.iter().filter_map(|&choice| model.mesh.chosen_node(choice)).collect()
 }
 
-/// The bit, from 0 at the top, where its rotation and torque are recorded beside the histories: where torsion is solved for, any node is
+/// The bit, from 0 at the top, if its rotation and torque are recorded in addition to the histories: if torsion is solved for, any node is
 /// recorded, and the bit is none of them.
 pub fn bit_beside(model: &Model) -> Option<usize> {
     let nodes = recorded_nodes(model);

@@ -15,16 +15,16 @@ use crate::solve::step::{EnergyRow, ErrorEstimate, SweepMonitor};
 pub struct Records<H = Vec<NodeHistory>> {
     /// Recording rate \[Hz\].
     pub rate_hz: f64,
-    /// Length of the run \[s\]: the scenario's duration, or where its window is settled at most that.
+    /// Length of the run \[s\]: the scenario's duration, or at most that if its window is settled.
     pub simulated_time: f64,
     /// Window of the run's statistics, and the verdict on its settling.
     pub settling: Settling,
-    /// Motion of the recorded nodes and of the bit at a lower rate: of the whole run where the window is settled, of the window where it
+    /// Motion of the recorded nodes and of the bit at a lower rate: of the whole run if the window is settled, of the window if it
     /// is fixed.
     pub course: Course,
     /// Histories of the recorded nodes.
     pub histories: H,
-    /// The run at the start of its orbit window, or a tenth of a second after it; absent where that is the end.
+    /// The run at the start of its orbit window, or a tenth of a second after it; absent if that is the end.
     pub window_start: Option<Box<Checkpoint>>,
     /// Contact statistics of every node.
     pub contacts: Vec<ContactStatistics>,
@@ -32,7 +32,7 @@ pub struct Records<H = Vec<NodeHistory>> {
     pub energy: Vec<EnergyRow>,
     /// Bound of the last row's residual \[J\]; a run that exceeds it ends as diverged.
     pub energy_bound: f64,
-    /// Residual that rounding alone may leave \[J\]: works below it show nothing.
+    /// Residual that rounding alone may leave \[J\]: smaller works have no meaning.
     pub energy_rounding: f64,
     /// Estimated error of the lateral displacements.
     pub error: ErrorEstimate,
@@ -58,7 +58,7 @@ pub struct TransientEffort {
     /// Frequency \[Hz\] up to which the longest step resolves a vibration: its period to a thousandth, and its amplitude to a thousandth
     /// in each period.
     pub resolved_hz: f64,
-    /// Contact iterations and how far from convergence they ended.
+    /// Contact iterations, with their distance from convergence.
     pub sweeps: SweepMonitor,
 }
 
@@ -69,7 +69,7 @@ pub enum Outcome<H = Vec<NodeHistory>> {
     Finished(Box<Records<H>>),
     /// It was cancelled.
     Cancelled,
-    /// It was suspended, and goes on from here; with the samples so far.
+    /// The run was suspended, and continues from here; with the samples so far.
     Suspended(Box<Checkpoint>, H),
 }
 
@@ -81,7 +81,7 @@ impl<H> Records<H> {
 }
 
 impl Records<()> {
-    /// The same with the histories that were kept elsewhere.
+    /// The same with histories that are kept elsewhere.
     pub fn with_histories<H>(self, histories: H) -> Records<H> {
         let Self {
             rate_hz,

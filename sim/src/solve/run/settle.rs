@@ -14,22 +14,22 @@ use crate::solve::modes::{TorsionalMode, growing_torsion};
 use crate::solve::statics::Equilibrium;
 use crate::solve::step::adaptive::smallest_motion;
 
-/// Rate of the samples that settling is judged by \[Hz\], at least, if the recording rate allows: statistics do not depend on it, and lines are
+/// Least rate of the samples by which settling is judged \[Hz\], if the recording rate allows: statistics do not depend on it, and lines are
 /// resolved up to half of it.
 const COURSE_RATE_HZ: f64 = 200.0;
 
 /// Time from one judgement to the next \[s\]: a few periods of the slowest torsion of long strings, and half of the shortest window.
 const BLOCK: f64 = 10.0;
 
-/// Highest frequency of a growing mode that is watched \[Hz\]: whirl and stick-slip lie below it. Torsion that grows above is for
-/// [`UndampedTorsion`](crate::solve::modes::UndampedTorsion) to report.
+/// Highest frequency of a growing mode that is watched \[Hz\]: whirl and stick-slip lie below it.
+/// [`UndampedTorsion`](crate::solve::modes::UndampedTorsion) reports torsion that grows above it.
 const HIGHEST_WATCHED_HZ: f64 = 30.0;
 
-/// Part of a mode's linear growth from which it has not saturated: the base case at 180 rpm in mud of 1500 kg/m3 grows with a third of it
-/// for half a minute before it begins to stick.
+/// Part of a mode's linear growth from which it has not saturated: the base case at 180 rpm in mud of 1500 kg/m3 grows with a third of its linear
+/// growth for half a minute before it begins to stick.
 const UNSATURATED: f64 = 0.25;
 
-/// Logarithm of an amplitude's growth over the windows that is no growth: beats move amplitudes of settled motion by as much.
+/// Logarithm of an amplitude's growth over the windows that counts as none: beats change amplitudes of settled motion by as much.
 const NO_GROWTH: f64 = 0.02;
 
 /// Standard deviation of the rotation speed below which it is not compared with itself, relative to the speed at the top.
@@ -40,8 +40,8 @@ const SMALLEST_ROTATION: f64 = 0.1;
 pub struct Settling {
     /// Kind of motion.
     pub regime: MotionRegime,
-    /// Time from which on the motion is as the statistics describe it \[s\]: the start of the first of three windows that agree, or of the
-    /// batches. Absent where it has not settled, or the window is fixed.
+    /// Time from which on the statistics describe the motion \[s\]: the start of the first of three windows that agree, or of the
+    /// batches. Absent if the motion has not settled, or the window is fixed.
     pub settled_at: Option<f64>,
     /// Window of the statistics \[s\].
     pub window: TimeWindow,
@@ -51,13 +51,13 @@ pub struct Settling {
     pub base_frequencies_hz: Vec<f64>,
     /// Intervals of the statistics of irregular motion, by recorded node; empty for other motion.
     pub intervals: Vec<OrbitInterval>,
-    /// The largest relative difference between orbit sizes of the windows that agree; absent but for regular motion.
+    /// Largest relative difference between orbit sizes of the windows that agree; of regular motion only.
     #[serde(default)]
     pub windows_differ: Option<f64>,
-    /// The largest relative difference between orbit sizes, or radius deviations, of the first and the second half of a window over which
+    /// Largest relative difference between orbit sizes, or radius deviations, of the first and the second half of a window over which
     /// the motion was not shown to have settled; absent for others.
     pub halves_differ: Option<f64>,
-    /// The torsional mode of the equilibrium that still grows; absent where none does.
+    /// The torsional mode of the equilibrium that still grows; absent if none does.
     pub growing_mode: Option<TorsionalMode>,
 }
 
@@ -69,14 +69,14 @@ pub enum MotionRegime {
     Regular,
     /// Settled, with statistics that scatter: they have confidence intervals.
     Irregular,
-    /// Neither by the end of the longest run.
+    /// Neither regular nor irregular by the end of the longest run.
     NotSettled,
     /// Not judged: the window was fixed beforehand.
     Fixed,
 }
 
 impl MotionRegime {
-    /// The name on the wire.
+    /// The name in requests and responses.
     pub fn name(self) -> &'static str {
         match self {
             MotionRegime::Regular => "regular",
@@ -90,15 +90,15 @@ impl MotionRegime {
 /// Half widths of the confidence intervals of 95 % of a node's statistics \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OrbitInterval {
-    /// Of the orbit size.
+    /// Half width for the orbit size.
     pub orbit_radius_rms: f64,
-    /// Of the standard deviation of the radius.
+    /// Half width for the standard deviation of the radius.
     pub radius_deviation: f64,
 }
 
 impl Settling {
-    /// The end of the window, at most as long as the longest that is compared: what histories are kept of at full rate, and what spectra
-    /// are of unless they have windows of their own.
+    /// The end of the window, at most as long as the longest that is compared: histories are kept over it at full rate, and spectra
+    /// are over it unless they have windows of their own.
     pub fn kept_window(&self) -> TimeWindow {
         let TimeWindow { from, to } = self.window;
         TimeWindow { from: from.max(to - LONGEST_WINDOW), to }
@@ -143,7 +143,7 @@ impl fmt::Display for Settling {
     }
 }
 
-/// The shortest that a run of a scenario can take \[s\].
+/// The shortest duration of a scenario's run \[s\].
 pub fn shortest_run(scenario: &Scenario) -> f64 {
     if !scenario.settles() {
         return scenario.duration;
@@ -151,13 +151,13 @@ pub fn shortest_run(scenario: &Scenario) -> f64 {
     scenario.duration.min(latest_end(scenario).max(4.0 * BLOCK))
 }
 
-/// Simulated time \[s\] over which the twin of a run of `duration` \[s\] with statistics over `window` is compared with it: a third of the run at
-/// most.
+/// Simulated time \[s\] over which the twin of a run of `duration` \[s\] with statistics over `window` is compared with the run: at most a third of
+/// it.
 pub fn twin_time(window: TimeWindow, duration: f64) -> f64 {
     (window.to - window.from).clamp(0.0, duration / 3.0)
 }
 
-/// The longest window that a scenario's orbit statistics can be over.
+/// The longest window of a scenario's orbit statistics.
 pub fn orbit_window_at_most(scenario: &Scenario) -> TimeWindow {
     scenario.orbit_window().unwrap_or_else(|| {
         let duration = scenario.duration;
@@ -165,7 +165,7 @@ pub fn orbit_window_at_most(scenario: &Scenario) -> TimeWindow {
     })
 }
 
-/// The longest window of which a scenario's histories can be kept at full rate, and the spectra be that have no windows of their own.
+/// The longest window over which a scenario's histories are kept at full rate, which is also that of spectra without windows of their own.
 pub fn kept_window_at_most(scenario: &Scenario) -> TimeWindow {
     scenario.orbit_window().unwrap_or_else(|| {
         let duration = scenario.duration;
@@ -173,7 +173,7 @@ pub fn kept_window_at_most(scenario: &Scenario) -> TimeWindow {
     })
 }
 
-/// The longest windows that a scenario's spectra can be over.
+/// The longest windows of a scenario's spectra.
 pub fn spectrum_windows_at_most(scenario: &Scenario) -> Vec<TimeWindow> {
     scenario.spectrum_windows().unwrap_or_else(|| vec![kept_window_at_most(scenario)])
 }
@@ -191,7 +191,7 @@ fn course_every(rate_hz: f64) -> u64 {
     ((rate_hz / COURSE_RATE_HZ) as u64).max(1)
 }
 
-/// Recorded samples that the course is of, out of so many.
+/// Recorded samples that belong to the course, out of a number of `samples`.
 fn kept_by_course(scenario: &Scenario, samples: u64) -> Range<u64> {
     scenario.orbit_window().map_or(0..samples, |window| {
         let range = sample_range(window.from, window.to, scenario.recording.rate_hz, samples as usize);
@@ -214,13 +214,13 @@ fn latest_end(scenario: &Scenario) -> f64 {
 /// Criteria of settling, fixed for a run.
 #[derive(Debug, Clone)]
 pub(super) struct Settle {
-    /// The fixed window; absent where it is to be settled.
+    /// The fixed window; absent if it is to be settled.
     fixed: Option<TimeWindow>,
     /// The last third of the longest run.
     last_third: TimeWindow,
     /// Recorded samples from one of the course to the next.
     every: u64,
-    /// Recorded samples that the course is of.
+    /// Recorded samples that belong to the course.
     kept: Range<u64>,
     /// Recorded samples from one judgement to the next.
     block: u64,
@@ -228,19 +228,19 @@ pub(super) struct Settle {
     earliest: u64,
     /// Errors that the accuracy allows.
     promise: Allowed,
-    /// The bit, from 0 at the top, where its rotation is recorded.
+    /// The bit, from 0 at the top, if its rotation is recorded.
     bit: Option<usize>,
     growing: Vec<TorsionalMode>,
 }
 
 impl Settle {
-    /// Of a run of so many samples whose ledger has a row every `ledger_every`.
+    /// Criteria of a run of `samples` samples whose ledger has a row every `ledger_every`.
     pub(super) fn new(model: &Model, equilibrium: &Equilibrium, samples: u64, ledger_every: u64) -> Self {
         let scenario = &model.scenario;
         let rate = scenario.recording.rate_hz;
         let fixed = scenario.orbit_window();
         let rows = (BLOCK * rate / ledger_every as f64).round().max(1.0) as u64;
-        // Integrator and step given in full promise nothing, and settle as the standard does.
+        // Integrator and step given in full promise nothing, and settle by the criteria of `standard`.
         let promise = scenario.accuracy.promise().unwrap_or_else(|| AccuracyPreset::Standard.promise());
         let Promise { orbit_size, radius_deviation } = promise;
         Self {
@@ -277,13 +277,13 @@ impl Settle {
         )
     }
 
-    /// A course of the same kind without room.
+    /// A course of the same kind without capacity.
     pub(super) fn empty_course(&self, model: &Model) -> Course {
         let rate = model.scenario.recording.rate_hz / self.every as f64;
         Course::new(rate, 0, recorded_nodes(model).len(), self.bit.is_some(), 0)
     }
 
-    /// Ends judgement: the run that follows is compared with another one.
+    /// Ends judgement: the run from here on is compared with another one.
     pub(super) fn close(&mut self) {
         self.fixed = Some(self.last_third);
         self.kept = 0..0;
@@ -300,7 +300,7 @@ impl Settle {
         sample.is_multiple_of(self.block)
     }
 
-    /// Takes into the course what was recorded last, if that sample belongs to it.
+    /// Takes the last recorded sample into the course, if it belongs there.
     pub(super) fn take(
         &self,
         sample: u64,
@@ -319,7 +319,7 @@ impl Settle {
         );
     }
 
-    /// Returns true if a run that has come to a recorded sample is to be judged.
+    /// True if a run that has reached a recorded sample is to be judged.
     pub(super) fn is_due(&self, sample: u64) -> bool {
         self.fixed.is_none() && sample > 0 && sample >= self.earliest && sample.is_multiple_of(self.block)
     }
@@ -415,7 +415,7 @@ impl Settle {
         }
     }
 
-    /// The mode that has not saturated by its growth from one window to another, the fastest where there are several.
+    /// The mode that has not saturated by its growth from one window to another, the fastest of several.
     fn growing_mode(&self, course: &Course, windows: &[Range<usize>; 2]) -> Option<TorsionalMode> {
         let lag = (windows[1].start as f64 - windows[0].start as f64) / course.rate_hz();
         let grows = |mode: &&TorsionalMode| {

@@ -1,4 +1,4 @@
-//! Snapshots of the whole string: which samples are some, and a block of them as a run makes it.
+//! Snapshots of the whole string: the samples at which they are taken, and a block of them from a run.
 
 use std::ops::Range;
 
@@ -47,7 +47,7 @@ impl SnapshotTimes {
         before(samples.clamp(self.window.start, self.window.end)) - before(self.window.start)
     }
 
-    /// The sample that the `index`-th snapshot is, both from 0.
+    /// The sample of the `index`-th snapshot, both from 0.
     pub fn sample(&self, index: u64) -> u64 {
         (self.window.start.div_ceil(self.every) + index) * self.every
     }
@@ -77,7 +77,7 @@ pub enum SnapshotSeries {
 }
 
 impl SnapshotSeries {
-    /// Those that the snapshots of a model have, in their order: of motions that it does not solve for there are none.
+    /// The series of a model's snapshots, in their order; motions that the model does not solve for have none.
     pub fn of(model: &Model) -> Vec<Self> {
         let effects = &model.effects;
         let all = [
@@ -96,7 +96,7 @@ impl SnapshotSeries {
 /// Some snapshots, one after the other, in single precision.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SnapshotBlock {
-    /// Quantities that they hold for every node.
+    /// Quantities of the snapshots for every node.
     pub series: Vec<SnapshotSeries>,
     /// The number of snapshots.
     pub count: usize,
@@ -117,7 +117,7 @@ impl SnapshotBlock {
     }
 }
 
-/// Takes the snapshots of a run. It reads the run's motion and writes nothing back: the run goes the same way without it.
+/// Takes the snapshots of a run. It reads the run's motion and does not change it.
 pub(super) struct Recorder<const D: usize> {
     times: SnapshotTimes,
     block: SnapshotBlock,
@@ -131,7 +131,7 @@ pub(super) struct Recorder<const D: usize> {
 }
 
 impl<const D: usize> Recorder<D> {
-    /// One for a run of `model`, whose steps span at most `samples_of_a_step` samples; none where no snapshots are asked for.
+    /// Recorder for a run of `model`, whose steps span at most `samples_of_a_step` samples; none if no snapshots are requested.
     pub(super) fn new(model: &Model, forces: &Forces<D>, samples_of_a_step: u64) -> Option<Self> {
         let times = SnapshotTimes::of(&model.scenario)?;
         let nodes = model.node_count();
@@ -152,7 +152,7 @@ impl<const D: usize> Recorder<D> {
         })
     }
 
-    /// Takes a snapshot where `sample` is one. Of a node `motion` tells displacements and rates of the degrees of freedom `freedoms`; the
+    /// Takes a snapshot if `sample` is one. For a node `motion` returns displacements and rates of the degrees of freedom `freedoms`; the
     /// others are at `rest`.
     pub(super) fn take(
         &mut self,
@@ -206,13 +206,13 @@ impl<const D: usize> Recorder<D> {
         &self.block
     }
 
-    /// Forgets them.
+    /// Removes them.
     pub(super) fn clear(&mut self) {
         self.block.clear();
     }
 }
 
-/// Torque G I_p theta_z' \[N m\] in the element above a node, of the first node in the one below it; `displacement` tells all degrees of
+/// Torque G I_p theta_z' \[N m\] in the element above a node, of the first node in the one below it; `displacement` returns all degrees of
 /// freedom of a node.
 pub(super) fn torque(model: &Model, node: usize, displacement: impl Fn(usize) -> [f64; DOFS]) -> f64 {
     // Element e joins the nodes e and e + 1.
@@ -221,7 +221,7 @@ pub(super) fn torque(model: &Model, node: usize, displacement: impl Fn(usize) ->
     model.elements[element].torque_row.iter().zip(ends.as_flattened()).map(|(a, x)| a * x).sum()
 }
 
-/// Snapshots of a block, of so many nodes with so many series.
+/// Number of snapshots in a block, for `nodes` nodes with `series` series.
 fn snapshots_of_block(nodes: usize, series: usize) -> u64 {
     (SNAPSHOT_BLOCK_BYTES / (nodes * series * size_of::<f32>()).max(1) as u64).max(1)
 }

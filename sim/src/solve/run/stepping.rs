@@ -1,4 +1,4 @@
-//! The loop over steps: what is recorded, booked and checked on the way.
+//! The loop over steps, with its recording, bookkeeping and checks.
 
 use std::ops::Range;
 
@@ -37,28 +37,28 @@ use crate::solve::step::{dense, resolved_hz, stability};
 /// becomes stable in tool joints (6.4e-5 s in the base case): with yet shorter steps an implicit one would have no point.
 const HALVINGS: u32 = 7;
 
-/// Rows of the energy ledger per second of simulated time: several a turn of a drillstring, and few beside the steps, of which there are
+/// Rows of the energy ledger per second of simulated time: several a turn of a drillstring, and few next to the steps, of which there are
 /// 125 a second at least.
 pub const LEDGER_RATE_HZ: f64 = 10.0;
 
 /// Bytes of samples that are handed over in one block.
 pub const BLOCK_BYTES: u64 = 8 << 20;
 
-/// Samples of a block at most.
+/// Largest number of samples in a block.
 const BLOCK_SAMPLES: u64 = 8192;
 
-/// Part of RK4's stability limit up to which it lengthens its steps by itself: the limit is found by a Rayleigh quotient, which comes from
-/// below and so makes steps too long, if only by 1e-5 in the base case, and of symmetric matrices, without what gyroscopic moments, flows and
-/// friction add.
+/// Part of RK4's stability limit up to which it lengthens its steps by itself. The limit is found by a Rayleigh quotient, which converges from
+/// below and so makes steps too long, if only by 1e-5 in the base case. It is that of symmetric matrices, without the contributions of gyroscopic
+/// moments, flows and friction.
 const BELOW_RK4_LIMIT: f64 = 0.95;
 
-/// Hole radii from the axis at which a run has diverged, with a wall. A node there is a whole hole radius deep in the rock, if not more: the
+/// Distance from the axis in hole radii at which a run has diverged, with a wall. A node there is at least a whole hole radius deep in the rock: the
 /// law's spring, of 1e7 N/m in the base case, would push with 1e6 N, the weight of 3.7 km of its drillpipe; sound runs have
 /// penetrations of millimetres.
 const FARTHEST_IN_HOLE: f64 = 2.0;
 
-/// The same without a wall: the string may swing freely, but not out of the theory of small rotations. In a hole of 0.2 m these are 10 m; a
-/// half wave of that height along 200 m has a slope of 0.16, whose square, which the theory leaves out, is 2.5 % of one.
+/// The same without a wall: the string may swing freely, within the theory of small rotations. In a hole of 0.2 m these are 10 m; a
+/// half wave of that height along 200 m has a slope of 0.16, whose square, which the theory neglects, is 2.5 % of one.
 const FARTHEST_WITHOUT_WALL: f64 = 100.0;
 
 /// A run that solves for D degrees of freedom a node.
@@ -68,7 +68,7 @@ pub(super) struct Run<'m, const D: usize> {
     forces: Forces<D>,
     /// Displacements at the start, of all degrees of freedom.
     rest: NodalVector,
-    /// Those that are solved for.
+    /// Initial displacements of the degrees of freedom that are solved for.
     initial: NodalField<D>,
     method: Box<dyn Method<D>>,
     ledger: Ledger<D>,
@@ -77,7 +77,7 @@ pub(super) struct Run<'m, const D: usize> {
     /// Samples of a whole run.
     samples: u64,
     grid: Grid,
-    /// Present where the step adapts itself.
+    /// Tolerances of the step; absent with fixed steps.
     tolerances: Option<Tolerances>,
     /// Samples from one row of the ledger to the next.
     ledger_every: u64,
@@ -93,23 +93,23 @@ pub(super) struct Run<'m, const D: usize> {
     block: Vec<NodeHistory>,
     /// Samples of the bit that were not handed over yet, if it is recorded with the nodes.
     bit: Option<NodeHistory>,
-    /// Present where snapshots are asked for.
+    /// Recorder of snapshots; absent if none are requested.
     snapshots: Option<Recorder<D>>,
     progress: Progress<D>,
 }
 
-/// Data that a run has recorded since it last handed something over.
+/// Data that a run has recorded since the last block.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
     /// Samples of the recorded nodes.
     pub histories: &'a [NodeHistory],
-    /// As many of the bit, where its rotation and torque are recorded beside them: [`bit_beside`](bit_beside).
+    /// The same samples of the bit, if its rotation and torque are recorded in addition: [`bit_beside`](bit_beside).
     pub bit: Option<&'a NodeHistory>,
-    /// Snapshots; absent where none are asked for.
+    /// Snapshots; absent if none are requested.
     pub snapshots: Option<&'a SnapshotBlock>,
 }
 
-/// Takes a block of what is recorded, which follows the block before; says why it cannot be kept.
+/// Takes a block of recorded data, which follows the block before; its error is the reason for which the block cannot be kept.
 pub type Keep<'a> = dyn FnMut(Block<'_>) -> Result<(), String> + 'a;
 
 /// Start of a run.
@@ -117,7 +117,7 @@ pub(super) struct Start<'a> {
     /// Displacements at the start, of all degrees of freedom.
     pub(super) rest: NodalVector,
     pub(super) equilibrium: &'a Equilibrium,
-    /// The longest step that resolves what has to be resolved \[s\].
+    /// Longest step that resolves all that the run must resolve \[s\].
     pub(super) resolving_step: f64,
 }
 
@@ -187,7 +187,7 @@ impl<'m, const D: usize> Run<'m, D> {
             progress: Progress {
                 course: settle.course(model),
                 ticks: 0,
-                // What happens at once is resolved; after it steps double as long as they may.
+                // The first events are resolved; after them steps double as long as they may.
                 level: if tolerances.is_some() { grid.top() / 2 } else { grid.top() },
                 ceiling: grid.top(),
                 state: State::at_rest(&start, forces.points.start(), stepping.step),
@@ -242,7 +242,7 @@ impl<'m, const D: usize> Run<'m, D> {
         Ok(())
     }
 
-    /// Goes on beside the run of a checkpoint, `away` from it, for `time` \[s\].
+    /// Continues as a twin of the run of a checkpoint, `away` from it, for `time` \[s\].
     pub(super) fn go_on_beside(
         &mut self,
         checkpoint: &Checkpoint,
@@ -306,7 +306,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 control.reach(self.time());
                 // The ledger adds up between its rows: a run is suspended at one of them.
                 if control.is_suspended() {
-                    // A run that has not begun records its start when it does.
+                    // A run that has not begun records its start once it does.
                     if self.progress.ticks > 0 {
                         self.hand_over(keep)?;
                     }
@@ -333,7 +333,7 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         let energy_bound = self.book()?;
         self.hand_over(keep)?;
-        // A run that has settled is as far as one that was to take all of its time.
+        // Progress of a settled run is complete, as if it had taken all of its time.
         control.report(self.grid.time(end));
         let simulated_time = self.time();
         let settling = settling.unwrap_or_else(|| self.settle.conclude(&self.progress.course, self.samples));
@@ -374,7 +374,7 @@ impl<'m, const D: usize> Run<'m, D> {
         self.settle.judge(&self.progress.course, sample)
     }
 
-    /// The place that the twin of a finished run starts from, of those that were kept.
+    /// The start of a finished run's twin, out of those that were kept.
     fn twin_start(&mut self, window: TimeWindow, simulated_time: f64) -> Option<Box<Checkpoint>> {
         let from =
             if self.settle.is_open() { window.to - twin_time(window, simulated_time) } else { window.from };
@@ -389,7 +389,7 @@ impl<'m, const D: usize> Run<'m, D> {
             .map(|(_, start)| Box::new(start))
     }
 
-    /// Keeps the run as it is, without what only its own end is about, if its twin may start here.
+    /// Keeps the state of the run, without data for its own end, if its twin may start here.
     fn keep_twin_start(&mut self) {
         let ticks = self.progress.ticks;
         if self.settle.is_open() {
@@ -414,7 +414,7 @@ impl<'m, const D: usize> Run<'m, D> {
         self.progress.twin_starts.push((ticks, start));
     }
 
-    /// Hands over what is recorded.
+    /// Hands over the recorded data.
     fn hand_over(&mut self, keep: &mut Keep<'_>) -> Result<(), TransientError> {
         let snapshots = self.snapshots.as_ref().map(Recorder::block);
         let has_samples = self.block.first().is_some_and(|first| !first.u.is_empty());
@@ -486,7 +486,7 @@ impl<'m, const D: usize> Run<'m, D> {
         self.forces.points.commit(time, &self.forces.motion_of(displacement, velocity), points);
     }
 
-    /// Enters the present contacts into the statistics, after a step of so many seconds, and the part of them in the orbit window.
+    /// Enters the present contacts into the statistics, after a step of the first of `durations`; the second is its part in the orbit window.
     fn observe(&mut self, durations: [f64; 2]) {
         let Progress { contacts, state, .. } = &mut self.progress;
         let (x, sticking_speed) = (&state.displacement, self.model.scenario.contact.friction_reference_speed);
@@ -616,7 +616,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let farthest = if self.model.effects.contact { FARTHEST_IN_HOLE } else { FARTHEST_WITHOUT_WALL };
         let bound = farthest * hole_radius;
         let (mut fastest, mut highest_speed) = (self.fastest, 0.0);
-        // A solve spreads what is not finite over the whole string; it began where the motion was fastest.
+        // A solve spreads a non-finite value over the whole string; it arose at the fastest node.
         if !state.displacement.is_finite() || !state.velocity.is_finite() {
             return Err(self.diverged(self.fastest, DivergenceReason::NotFinite));
         }
@@ -646,7 +646,7 @@ impl<'m, const D: usize> Run<'m, D> {
     }
 }
 
-/// The recording intervals of the scenario's fixed orbit window, out of so many samples; none where it is settled.
+/// Recording intervals of the scenario's fixed orbit window, out of `samples`; none if the window is settled.
 fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
     let Some(window) = scenario.orbit_window() else { return 0..0 };
     let range = sample_range(window.from, window.to, scenario.recording.rate_hz, samples as usize);
@@ -660,12 +660,12 @@ fn block_samples(model: &Model) -> u64 {
     (BLOCK_BYTES / bytes.max(1)).clamp(1, BLOCK_SAMPLES)
 }
 
-/// Rows of the ledger over so many samples, the one at the end included.
+/// Number of rows of the ledger over `samples` samples, the one at the end included.
 fn ledger_rows(samples: u64, every: u64) -> usize {
     (samples / every) as usize + 2
 }
 
-/// Adds a sample to a history: the degrees of freedom `freedoms` as `motion` tells displacements and rates of a node, the others at
+/// Adds a sample to a history: `motion` returns displacements and rates of the degrees of freedom `freedoms` of a node; the others are at
 /// rest.
 fn push<const D: usize>(
     history: &mut NodeHistory,

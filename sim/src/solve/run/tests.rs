@@ -1,4 +1,4 @@
-//! A force with a law of its own at the end of a string, through every part of a run.
+//! A force with a law of its own at the end of a string, in all parts of a run.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -165,7 +165,7 @@ fn a_bit_torque_turns_the_string_as_an_independent_program_has_it() {
         let Outcome::Finished(records) = ended.unwrap() else { panic!("{integrator:?} was not finished") };
         for (time, wanted) in wanted {
             let omega = model.rotation_speed + rates[(100.0 * time) as usize];
-            // Five per mille of the swing, which the tolerance of the check is.
+            // Five per mille of the swing, the tolerance of the check.
             assert!(
                 (omega - wanted).abs() < 5e-3 * 0.1,
                 "{integrator:?}, {time} s: {omega} against {wanted}"
@@ -298,7 +298,7 @@ fn forces_at_nodes_go_on_from_a_checkpoint_to_the_same_bits() {
     for (integrator, step) in
         [(Integrator::Esdirk4, 1e-2), (Integrator::GeneralizedAlpha, 5e-3), (Integrator::Rk4, 5e-4)]
     {
-        // Two iterations: what a step begins with shows in its end.
+        // With two iterations, the start of a step shows in its end.
         let accuracy = Accuracy::Explicit(TimeStepping::fixed(integrator, step));
         let scenario = Scenario { accuracy, ..string(integrator, step, 1.0) };
         for model in [with_lag(&scenario), with_bit_torque(&scenario)] {

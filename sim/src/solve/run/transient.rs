@@ -12,10 +12,10 @@ use crate::solve::model::Model;
 use crate::solve::statics::Equilibrium;
 use crate::solve::step::{TransientError, choice};
 
-/// A run under way.
+/// A run in progress.
 pub struct Transient<'m>(pub(super) Solved<'m>);
 
-/// The run, by how many degrees of freedom of a node move: those that are held along the whole string are not solved for.
+/// The run, by the number of moving degrees of freedom of a node: those that are held along the whole string are not solved for.
 pub(super) enum Solved<'m> {
     Six(Box<Run<'m, 6>>),
     Five(Box<Run<'m, 5>>),
@@ -23,7 +23,7 @@ pub(super) enum Solved<'m> {
 }
 
 impl<'m> Transient<'m> {
-    /// A run of `model` from its equilibrium, as its scenario says.
+    /// A run of `model` from its equilibrium.
     ///
     /// # Errors
     /// A matrix is singular or an explicit step is beyond its stability limit.
@@ -31,7 +31,7 @@ impl<'m> Transient<'m> {
         Self::member(model, equilibrium, 0)
     }
 
-    /// A run of `model` as a member of its ensemble: from the equilibrium (0), or slightly beside it.
+    /// A run of `model` as a member of its ensemble: from the equilibrium (0), or from a start disturbed slightly.
     ///
     /// # Errors
     /// As [`Transient::new`].
@@ -52,7 +52,7 @@ impl<'m> Transient<'m> {
         }))
     }
 
-    /// A run that goes on from a checkpoint of the same scenario.
+    /// A run that continues from a checkpoint of the same scenario.
     ///
     /// # Errors
     /// The checkpoint belongs to another scenario or model version, or [`Transient::new`] fails.
@@ -70,7 +70,7 @@ impl<'m> Transient<'m> {
         Ok(transient)
     }
 
-    /// A run that goes on from a checkpoint of the same scenario as the first member of an ensemble starts: beside it by [`DISTURBANCE`]; for
+    /// A run that continues from a checkpoint of the same scenario, displaced by [`DISTURBANCE`] as the start of the first member of an ensemble, for
     /// `time` \[s\] or to its end.
     ///
     /// # Errors
@@ -127,7 +127,8 @@ impl<'m> Transient<'m> {
         }
     }
 
-    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots are passed over.
+    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it, with the histories in memory; snapshots
+    /// are not kept.
     ///
     /// # Errors
     /// The motion diverges.
@@ -167,9 +168,9 @@ impl<'m> Transient<'m> {
         })
     }
 
-    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it; samples and snapshots are handed over to `keep` block by
-    /// block, so that the run's memory does not grow with its duration. Before it ends in any way but by an error or a
-    /// cancel, all of them are.
+    /// Runs until the motion has settled, to the end of the scenario's duration, or until `control` stops it. Samples and snapshots are handed over
+    /// to `keep` block by block, so that the run's memory does not grow with its duration. All of them are handed over before the run ends, except by
+    /// an error or a cancellation.
     ///
     /// # Errors
     /// The motion diverges or a block cannot be kept.

@@ -1,6 +1,6 @@
 //! Continuation: the path of equilibria from the unloaded string to the loaded one, or from a wall without friction to one with it.
 //!
-//! Either begins where an equilibrium is known: at rest on the centre line, or on the frictionless wall.
+//! Either path begins at a known equilibrium: at rest on the centre line, or on the frictionless wall.
 
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
 use super::path::{self, Growth, Point, add};
@@ -9,11 +9,11 @@ use crate::math::dof::{DOFS, U, V};
 use crate::math::linalg::BlockTridiagonal;
 use crate::solve::model::{Model, NodalVector};
 
-/// Follows the equilibria from the unloaded string to `load`, and moves `displacement` to the one there; `None` where the path does not come
-/// there or the search loses hold of it.
+/// Follows the equilibria from the unloaded string to `load`, and moves `displacement` to the last one; `None` if the path does not reach `load`
+/// or the search loses the path.
 ///
-/// A `spring` per length \[N/m2\] holds the string on the centre line to begin with and fades as the loads grow. Without one, the path is that of
-/// the string under a growing share of its loads. With one it begins also where a string without loads has no stiffness, such as a pendulum.
+/// A `spring` per length \[N/m2\] holds the string on the centre line at first and fades as the loads grow. Without one, the path is that of
+/// the string under a growing share of its loads. With one, the path begins even if a string without loads has no stiffness, such as a pendulum.
 pub(super) fn follow(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -28,8 +28,8 @@ pub(super) fn follow(
     Some(outcome)
 }
 
-/// Follows the equilibria under `load` as the friction of the wall grows, from the one on [a wall without](frictionless), at `displacement`,
-/// which is moved to the one with it; `None` where their path does not come there.
+/// Follows the equilibria under `load` as the friction of the wall grows. The path begins at `displacement`, the equilibrium on
+/// [a wall without friction](frictionless), and moves it to the one with friction; `None` if the path does not reach it.
 pub(super) fn with_growing_friction(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -38,8 +38,8 @@ pub(super) fn with_growing_friction(
     path::follow(model, &Friction { model, load, none: frictionless(model) }, displacement)
 }
 
-/// Follows the equilibria under `load` as the wall moves from the nodes along the elements, from the one on the [wall at the nodes](Wall::at_nodes), at
-/// `displacement`, which is moved to the one along the elements; `None` if their path does not come there.
+/// Follows the equilibria under `load` as the wall moves from the nodes along the elements. The path begins at `displacement`, the equilibrium on the
+/// [wall at the nodes](Wall::at_nodes), and moves it to the one along the elements; `None` if the path does not reach it.
 pub(super) fn along_the_elements(
     model: &Model,
     load: &[[f64; DOFS]],

@@ -19,7 +19,7 @@ pub enum StaticsError {
         residual: f64,
         /// Node where it stands, from 1.
         node: usize,
-        /// The instability that the string has wherever it lies; absent where none is shown.
+        /// Instability that the string has in every position; absent if none was found.
         overload: Option<Overload>,
     },
     /// The tangent broke down.
@@ -28,7 +28,7 @@ pub enum StaticsError {
     /// The flow past the string has no solution.
     #[error("the mud at node {node}: {error}")]
     Mud {
-        /// Upper node of the first element where that shows, from 1.
+        /// Upper node of the first element without a solution, from 1.
         node: usize,
         /// Error in its computation.
         error: MudError,
@@ -42,7 +42,7 @@ pub enum StaticsError {
         passes: usize,
         /// Last change of an eccentricity.
         change: f64,
-        /// Upper node of the element where it is largest, from 1.
+        /// Upper node of the element with the largest change, from 1.
         node: usize,
     },
 }

@@ -1,9 +1,10 @@
-//! Homotopy: the path from a string that a spring holds in the middle of a smooth wall to the scene.
+//! Homotopy: the path from a string that a spring holds in the middle of a smooth wall to the scenario's string.
 //!
 //! Loads, friction and the momentum of the flows grow by a share s, while the spring fades and the wall becomes sharp. At s = 0 there is one
-//! equilibrium, the centre line. Before the end everything is smooth but the drag, which has kinks at the centre line and at the wall. Where all is
-//! smooth, the path of equilibria that begins there neither ends nor branches (but by coincidence: Chow, Mallet-Paret and Yorke 1978): it comes back, goes to infinity, or leads to an equilibrium of
-//! the scene. A wall stiff enough to hold the string shuts out the first two. The drag of the mud is that of where the string lies all along.
+//! equilibrium, the centre line. Before the end everything is smooth but the drag, which has kinks at the centre line and at the wall. If all is
+//! smooth, the path of equilibria that begins there neither ends nor branches (but by coincidence: Chow, Mallet-Paret and Yorke 1978): it comes back,
+//! goes to infinity, or leads to an equilibrium of the scenario. A wall stiff enough to hold the string excludes the first two. The drag of the mud
+//! is taken at the string's position all along.
 
 use super::hydraulics::Sections;
 use super::newton::{
@@ -21,11 +22,11 @@ use crate::solve::model::{
     Model, NodalVector, add_element_matrix, add_element_vector, clear_held, element_values,
 };
 
-/// Springs to the centre line \[N/m2\] from which the path is followed, one after the other where it does not lead to the scene: the one that
+/// Springs to the centre line \[N/m2\] from which the path is followed, one after the other until it leads to the scenario: the one that
 /// Newton's method begins with, and others of orders of magnitude, without a derivation.
 const SPRINGS: [f64; 3] = [3e4, 1e6, 1e3];
 
-/// Moves a string from the centre line to an equilibrium of the scene; `None` where no path leads to one.
+/// Moves a string from the centre line to an equilibrium of the scenario; `None` if no path leads to one.
 pub(super) fn find(model: &Model, sections: &Sections) -> Option<(NodalVector, NewtonOutcome)> {
     SPRINGS.iter().find_map(|&spring| {
         let mut displacement = vec![[0.0; DOFS]; model.node_count()];
@@ -34,7 +35,7 @@ pub(super) fn find(model: &Model, sections: &Sections) -> Option<(NodalVector, N
     })
 }
 
-/// All of the scene grows.
+/// Growth of the loads, the friction and the momentum of the flows together.
 struct Scene<'a> {
     model: &'a Model,
     sections: &'a Sections,
@@ -42,9 +43,9 @@ struct Scene<'a> {
     load: NodalVector,
     /// Spring to the centre line at every node \[N/m\].
     springs: Vec<f64>,
-    /// Width of the wall at every node \[m\], to begin with.
+    /// Initial width of the wall at every node \[m\].
     widths: Vec<f64>,
-    /// The same along every element, if the wall acts there.
+    /// Initial width of the wall along every element, if the wall acts there.
     widths_along: Vec<f64>,
     held: Vec<[bool; DOFS]>,
 }
@@ -52,13 +53,13 @@ struct Scene<'a> {
 impl<'a> Scene<'a> {
     fn new(model: &'a Model, sections: &'a Sections, spring: f64) -> Self {
         let springs: Vec<f64> = tributary_lengths(model).iter().map(|length| spring * length).collect();
-        // The wall pushes as far from it as its clearance with K_c width^2 / (4 j0): about as much as the spring there.
+        // At a distance from the wall equal to its clearance, the wall's force is K_c width^2 / (4 j0): about that of the spring there.
         let width = |wall: &ContactNode<f64>, spring: f64| {
             let stiffness = model.wall.law().stiffness(wall.clearance) * wall.stiffness_share;
             wall.clearance * (2.0 * (spring / stiffness).sqrt()).min(1.0)
         };
         let widths = model.wall.sites().iter().zip(&springs).map(|(site, &nodal)| match site {
-            // A node without a share of the wall has no width either: its force is zero whatever that is.
+            // A node without a share of the wall has no width either: its force is zero for any width.
             Some(site) if site.stiffness_share > 0.0 => width(site, nodal),
             _ => 0.0,
         });
@@ -75,7 +76,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Unbalanced forces and their tangent with the contacts given, under a share of the drag that the mud exerts where the string lies, and of
+    /// Unbalanced forces and their tangent with the contacts given, under a share of the mud's drag at the string's position and of
     /// all other loads; with these whole loads.
     fn loaded(
         &self,
@@ -161,8 +162,8 @@ impl Growth for Scene<'_> {
         Some((residual, tangent, slope))
     }
 
-    /// Plain Newton on the scene itself. Where nothing resists a motion of the string, the spring holds it at each iterate: it stays where the
-    /// path led.
+    /// Plain Newton on the scenario itself. If nothing resists a motion of the string, the spring holds it at each iterate: it stays at the
+    /// end of the path.
     fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
         let at_rest = |displacement: &[[f64; DOFS]]| {
             let contacts = WallAtRest { model: self.model, wall: &self.model.wall, displacement };

@@ -1,4 +1,4 @@
-//! The mud past a string at rest: flows, drag and pressures, by where the string lies.
+//! The mud past a string at rest: flows, drag and pressures, by the string's position.
 
 use drillsweep_scenario::Mud;
 
@@ -51,8 +51,8 @@ impl Sections {
         elements.map(flow).collect()
     }
 
-    /// The drag on every element where the string lies \[N/m\], with its derivatives by u and v of the upper and of the lower node \[N/m2\]; empty
-    /// where it is left out. `None` where there is no flow.
+    /// Drag on every element at the string's position \[N/m\], with its derivatives by u and v of the upper and of the lower node \[N/m2\]; empty
+    /// if drag is left out. `None` if there is no flow.
     pub(super) fn drag_at(
         &self,
         model: &Model,
@@ -67,7 +67,7 @@ impl Sections {
                 let flow = self.distinct[section].at_eccentricity(eccentricity).ok()?;
                 Some(mud_drag::per_length(std::slice::from_ref(&flow))[0])
             };
-            // A pipe in the wall has the flow of one that touches it.
+            // A pipe beyond the wall has the flow of one that touches it.
             let slope = if eccentricity < 1.0 {
                 let ends = [(eccentricity - ECCENTRICITY_STEP).max(0.0), eccentricity + ECCENTRICITY_STEP];
                 (drag(ends[1])? - drag(ends[0])?) / (ends[1] - ends[0])
@@ -102,7 +102,7 @@ pub(super) fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) ->
     pressures(mud, gravity::acceleration(model.effects.gravity), &true_vertical_depth, &steps)
 }
 
-/// Drag of the mud on every element, upward \[N/m\]; empty where it is left out.
+/// Drag of the mud on every element, upward \[N/m\]; empty if drag is left out.
 pub(super) fn drag(model: &Model, flows: &[ElementFlow]) -> Vec<f64> {
     if model.effects.mud_drag { mud_drag::per_length(flows) } else { Vec::new() }
 }

@@ -30,19 +30,19 @@ use crate::solve::model::{Model, NodalVector, element_values};
 /// Hydraulic passes after which a fixed point must have been reached; each gains about three digits.
 const HYDRAULIC_PASSES: usize = 30;
 
-/// Change of an eccentricity at which string and mud have converged: as it gains three digits a pass, what is left is rounding.
+/// Change of an eccentricity at which string and mud have converged: with three digits gained in a pass, the remainder is rounding.
 const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
 
-/// By how much the search's spring is stiffened and its steps are shortened, one after the other, where it does not converge: shorter steps
-/// alone, then held by a spring thirty times as stiff too. They are orders of magnitude, without a derivation.
+/// Factors by which the search's spring is stiffened and its steps are shortened, one pair after the other, if it does not converge: shorter steps
+/// alone, then also a spring thirty times as stiff. They are orders of magnitude, without a derivation.
 const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
 
-/// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other where it does not reach the loads: none,
-/// then the one that the search begins with, which holds the string where its loads do not stretch it yet, and one thirty times as stiff.
+/// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other until it reaches the loads: none,
+/// then the one that the search begins with, which holds the string until its loads stretch it, and one thirty times as stiff.
 const PATH_SPRINGS: [f64; 3] = [0.0, 3e4, 1e6];
 
-/// Stiffness of softer walls on the way to the scenario's own, a decade apart: each lets the string ten times deeper in than the next one, from
-/// where Newton's method has to find the next.
+/// Stiffness of softer walls on the way to the scenario's own, a decade apart. Each lets the string penetrate ten times as deep as the next one,
+/// and Newton's method proceeds from one to the next.
 const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
 /// Iterations of a search with steps a tenth as long.
@@ -61,7 +61,7 @@ pub struct Equilibrium {
     pub normal_force: Vec<f64>,
     /// Flow past every element; empty without mud.
     pub flows: Vec<ElementFlow>,
-    /// Axial drag of the mud on every element, upward \[N/m\]; empty where there is none.
+    /// Axial drag of the mud on every element, upward \[N/m\]; empty without drag.
     pub drag: Vec<f64>,
     /// Pressures of the mud at every node; absent without mud.
     pub pressures: Option<Pressures>,
@@ -129,7 +129,7 @@ impl Equilibrium {
         Self::assemble(model, &model.wall, displacement, flows, drag, effort)
     }
 
-    /// The equilibrium of the same model with another friction at rest, searched from this one; this one itself if nothing rubs.
+    /// The equilibrium of the same model with another friction at rest, searched from this one; this one itself if there is no friction.
     ///
     /// # Errors
     /// Newton's method from this equilibrium, with and without its spring, or the iteration with the hydraulics does not converge.
@@ -160,8 +160,8 @@ impl Equilibrium {
         })
     }
 
-    /// The equilibrium on `wall` under the drag of the mud where the string lies, found by computing each from the other in turn: from
-    /// displacements and eccentricities to begin with, and by `solve`, which moves displacements to the equilibrium under a load.
+    /// The equilibrium on `wall` under the drag of the mud at the string's position. Equilibrium and drag are computed from each other in turn,
+    /// beginning with displacements and eccentricities; `solve` moves displacements to the equilibrium under a load.
     fn in_passes(
         model: &Model,
         wall: &Wall,
@@ -195,7 +195,7 @@ impl Equilibrium {
         unreachable!("the last pass returns")
     }
 
-    /// The string on the centre line without any load or flow: a stand-in where the equilibrium is not known yet.
+    /// The string on the centre line without any load or flow: a stand-in for an equilibrium that is not known yet.
     pub(crate) fn unloaded(model: &Model) -> Self {
         let (nodes, elements) = (model.node_count(), model.elements.len());
         Self {
@@ -251,7 +251,7 @@ fn eccentricities(model: &Model, displacement: &[[f64; DOFS]]) -> Vec<f64> {
     (0..model.elements.len()).map(|element| model.eccentricity(element, displacement)).collect()
 }
 
-/// Newton's method, and where it does not converge, again from the same start: against a soft wall that is stiffened in stages, then with
+/// Newton's method with fallbacks from the same start if it does not converge: against a soft wall that is stiffened in stages, then with
 /// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, along the path from a wall
 /// without friction, and by plain steps of any length.
 fn with_fallbacks(
@@ -312,7 +312,7 @@ fn with_fallbacks(
     })
 }
 
-/// The path of equilibria as friction grows, from the one on the wall without; `None` also where that is not found, or the wall has no friction.
+/// The path of equilibria as friction grows from zero; `None` if the equilibrium without friction is not found, or the wall has no friction.
 fn with_growing_friction(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -338,7 +338,8 @@ fn with_growing_friction(
     if is_found { continuation::with_growing_friction(model, load, displacement) } else { None }
 }
 
-/// The equilibrium on a wall along the elements from the one on the wall put at the nodes; `None` if the wall is at the nodes anyway, or either is not found.
+/// The equilibrium on a wall along the elements, from the one on the wall at the nodes; `None` if the wall is at the nodes anyway, or either is not
+/// found.
 fn by_way_of_the_nodes(
     model: &Model,
     load: &[[f64; DOFS]],

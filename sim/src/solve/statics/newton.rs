@@ -17,24 +17,24 @@ const PLAIN_NEWTON_BELOW: f64 = 1e-6;
 /// load](PLAIN_NEWTON_BELOW), so that a step which leaves more than the loads themselves has left the region where it converges.
 const SHIFT_AGAIN_ABOVE: f64 = 10.0;
 
-/// By how much the shift follows the residual in one iteration at most, down or up. It is in proportion to the residual otherwise
+/// Largest factor by which the shift follows the residual in one iteration, down or up. Otherwise it is in proportion to the residual
 /// (switched evolution relaxation, Mulder and van Leer 1985; Kelley and Keyes 1998, who prove that it converges).
 const SHIFT_CHANGE: f64 = 10.0;
 
 /// Iterations of plain Newton next to an equilibrium.
 pub(super) const LAST_ITERATIONS: usize = 40;
 
-/// Last step of plain Newton next to an equilibrium, in the largest displacement: of metres of sag, rounding leaves more than the tolerance of
+/// Last step of plain Newton next to an equilibrium, in the largest displacement. With metres of sag, rounding leaves more than the tolerance of
 /// strings that lie in their hole.
 const ARRIVED: f64 = 1e-9;
 
 /// Settings of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewtonSettings {
-    /// Lateral spring per length of string that holds each iterate at the last one to begin with \[N/m2\]. Under
+    /// Initial lateral spring per length of string that holds each iterate at the last one \[N/m2\]. Under
     /// weight on bit a long string is buckled without its wall, so that plain Newton from the centre line
     /// diverges; the spring fades with the residual. A beam on a spring k buckles under 2 sqrt(k E I) (Hetenyi 1946): with 3e4 N/m2, the
-    /// default, a drillpipe of 1.3 MN m2 holds 390 kN, more than weights on bit are.
+    /// default, a drillpipe of 1.3 MN m2 holds 390 kN, which exceeds weights on bit.
     pub initial_shift: f64,
     /// Largest lateral displacement of one iteration \[m\]. The default, 0.02, is less than a collar's clearance (28 mm in the base case), so
     /// that no iteration throws a node from one side of the hole into the other.
@@ -42,7 +42,7 @@ pub struct NewtonSettings {
     /// Iterations after which the search has failed.
     pub iteration_limit: usize,
     /// Last Newton step at which the search has converged \[m, rad\]. The default, 1e-11, is 1e-4 N of contact force at 1e7 N/m; convergence
-    /// is quadratic there, so that the step after it would be rounding.
+    /// is quadratic there, so that the next step would be rounding.
     pub tolerance: f64,
 }
 
@@ -120,8 +120,8 @@ pub(super) fn solve(
     })
 }
 
-/// Adds the rotational part of a lateral spring of `shift` \[N/m2\] along the elements, 2 l^3/105 of each end: between nodes a wall along the elements pushes by
-/// rotations alone.
+/// Adds the rotational part of a lateral spring of `shift` \[N/m2\] along the elements, 2 l^3/105 of each end: between nodes, a wall along the
+/// elements pushes by rotations alone.
 fn hold_rotations(model: &Model, shift: f64, tangent: &mut BlockTridiagonal) {
     for (e, element) in model.elements.iter().enumerate() {
         let spring = shift * 2.0 / 105.0 * element.chord.length.powi(3);
@@ -144,7 +144,7 @@ fn largest_deflection(wall: &Wall, step: &[[f64; DOFS]]) -> f64 {
     along.fold(of_nodes, f64::max)
 }
 
-/// Plain Newton from `displacement` next to an equilibrium under `load`, with steps as long as they are.
+/// Plain Newton from `displacement` next to an equilibrium under `load`, without a limit on the step.
 pub(super) fn finish(
     model: &Model,
     load: &[[f64; DOFS]],
@@ -175,7 +175,7 @@ pub(super) fn linearise(
     linearise_with(model, load, displacement, &WallAtRest { model, wall, displacement })
 }
 
-/// Contacts of a string as the equations of its equilibrium take them.
+/// Contacts of a string for the equations of its equilibrium.
 pub(super) trait Contacts {
     /// Forces and tangent of a node, if it touches.
     fn of_node(&self, node: usize) -> Option<NodeContact>;

@@ -1,4 +1,4 @@
-//! Loads beyond the string's stability: why there may be no equilibrium, or none at which it would stay.
+//! Loads beyond the string's stability, under which there may be no equilibrium, or no stable one.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -13,10 +13,10 @@ use crate::solve::model::{Model, NodalVector, add_element_matrix, clear_held};
 /// Size up to which an eigenvalue of a pivot block, whose diagonal is scaled to 1, counts as zero.
 const ZERO: f64 = 1e-9;
 
-/// Roundings of the largest entry of a stiffness that may add up to a resistance against turning: some for each of a row's entries.
+/// Number of roundings of a stiffness' largest entry that may add up to a resistance against turning: some for each of a row's entries.
 const ROUNDING: f64 = 16.0;
 
-/// A string that is not stable at any equilibrium it may have: even with all nodes held by the wall, or under its loads where there is none, its
+/// A string that is not stable at any equilibrium it may have. Even with all nodes held by the wall, or under its loads without a wall, its
 /// stiffness has negative eigenvalues, or none at all against turning about its top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overload {
@@ -26,9 +26,9 @@ pub struct Overload {
     pub free_rotations: usize,
     /// True if the eigenvalues are those of a string whose nodes are all held by the wall.
     pub held_by_wall: bool,
-    /// Measured depth \[m\] of the upper end of the stretch that is loaded most.
+    /// Measured depth \[m\] of the upper end of the most loaded part.
     pub measured_depth: f64,
-    /// Its length \[m\]: an element, since the wall holds its nodes; the whole string where there is no wall.
+    /// Its length \[m\]: an element, since the wall holds its nodes; the whole string without a wall.
     pub length: f64,
     /// Compression \[N\], with the flow's momentum.
     pub compression: f64,
@@ -69,14 +69,14 @@ pub(super) fn verdict(overload: Option<&Overload>) -> String {
     )
 }
 
-/// The instability of a string wherever it lies, if there is one, with the stretch that is loaded most.
+/// The instability that the string has in every position, if there is one, with its most loaded part.
 ///
-/// Compression follows from the balance along the string and does not depend on where it lies: it is summed up from the bit along the buoyed
+/// Compression follows from the balance along the string and does not depend on its position: it is summed up from the bit along the buoyed
 /// weight, without the mud's drag; torque is the bit's. Contact acts on the lateral displacements of nodes, so that it holds the string at
-/// most as bearings there do, which leave rotations free; a wall along the elements resists their deflection between the nodes too, with its
-/// stiffness at most. Without a wall, what follows the end of the string (torque, flow) is left out, so that the
+/// most as bearings there do, which leave rotations free. A wall along the elements resists their deflection between the nodes too, at most with its
+/// whole stiffness. Without a wall, follower loads at the end of the string (torque, flow) are left out, so that the
 /// stiffness is symmetric. If the stiffness of the string is negative in some direction with all these
-/// displacements held, it is so at every equilibrium. A shaft with pinned ends under thrust P and torque T buckles where P / (EI) + (T / 2EI)^2 =
+/// displacements held, it is so at every equilibrium. A shaft with pinned ends under thrust P and torque T buckles if P / (EI) + (T / 2EI)^2 =
 /// (pi / l)^2 (Greenhill 1883).
 pub(super) fn find(model: &Model) -> Option<Overload> {
     let string = model.mesh.length();
@@ -124,7 +124,7 @@ pub(super) fn find(model: &Model) -> Option<Overload> {
     is_unstable.then_some(Overload { negative_eigenvalues, free_rotations, ..worst })
 }
 
-/// In how many of the two lateral directions at its pinned top a string without a wall turns as a whole without its stiffness resisting it by
+/// Number of the two lateral directions at its pinned top in which a string without a wall turns as a whole, its stiffness resisting by no
 /// more than rounding.
 fn free_rotations(model: &Model, stiffness: &BlockTridiagonal) -> usize {
     if model.effects.contact || model.scenario.operation.top != TopCondition::Pinned {
@@ -155,7 +155,7 @@ fn free_rotations(model: &Model, stiffness: &BlockTridiagonal) -> usize {
     [top.e1, top.e2].iter().filter(|axis| turns_freely(axis)).count()
 }
 
-/// In how many directions the stiffness is negative, with the lateral displacements of all nodes held where there is a wall.
+/// Number of directions in which the stiffness is negative, with the lateral displacements of all nodes held if there is a wall.
 fn negative_directions(model: &Model, stiffness: BlockTridiagonal) -> usize {
     let nodes = model.node_count();
     let held: Vec<[bool; DOFS]> = (0..nodes)

@@ -1,7 +1,7 @@
 //! A path of equilibria, followed by its arc length.
 //!
-//! `R(x, s) = 0`, the balance under a share s of something that grows, is a path through x and s. It is followed by its arc length (Riks 1979;
-//! Keller 1977), so that it may turn back in s: where it does, at a limit point, the equilibria that began there end.
+//! `R(x, s) = 0`, the balance under a share s of a growing quantity, is a path through x and s. It is followed by its arc length (Riks 1979;
+//! Keller 1977), so that it may turn back in s: at such a limit point, the equilibria that began at s = 0 end.
 
 use super::newton::{self, NewtonOutcome, tributary_lengths};
 use crate::math::dof::{DOFS, U, V};
@@ -11,29 +11,29 @@ use crate::solve::model::{Model, NodalVector};
 /// First step along the path, in shares or radii of the hole, whichever are more.
 const FIRST_STEP: f64 = 0.05;
 
-/// The shortest step: of a path that needs shorter ones the search has lost hold.
+/// Shortest step: the search has lost a path that needs shorter ones.
 const SHORTEST_STEP: f64 = 1e-9;
 
 /// Linearisations after which a path is left.
 const MOST_LINEARISATIONS: usize = 4000;
 
-/// Iterations within which a step has to come back to the path.
+/// Iterations within which a step has to return to the path.
 const MOST_CORRECTIONS: usize = 10;
 
-/// Last correction at which it has, in the largest displacement (or 1 m, 1 rad), and of the share.
+/// Last correction at which a step has returned, in the largest displacement (or 1 m, 1 rad), and of the share.
 const ON_THE_PATH: f64 = 1e-8;
 
-/// Quantity that grows along a path from nothing, at s = 0, to the whole of it, at s = 1.
+/// Quantity that grows along a path from zero, at s = 0, to its whole, at s = 1.
 pub(super) trait Growth {
-    /// Unbalanced forces at a point, their tangent, and their derivative by the share; `None` where there are none.
+    /// Unbalanced forces at a point, their tangent, and their derivative by the share; `None` if the point has none.
     fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)>;
 
     /// Moves `displacement` from next to the end of the path onto it.
     fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome>;
 }
 
-/// Follows the path from `displacement`, at s = 0, and moves it to the end of the path, at s = 1; `None` where the path turns back to where it
-/// began, or the search loses hold of it.
+/// Follows the path from `displacement`, at s = 0, and moves it to the end of the path, at s = 1; `None` if the path turns back to its
+/// beginning, or the search loses the path.
 pub(super) fn follow(
     model: &Model,
     growth: &impl Growth,
@@ -132,7 +132,7 @@ impl<G: Growth> Path<'_, G> {
                 / (self.product(&direction.displacement, &by_share) + direction.share);
             add(&mut at_share, share, &by_share);
             let size = at_share.iter().flatten().fold(share.abs(), |most, value| most.max(value.abs()));
-            // What leads further away than the step itself leads to another path.
+            // A correction longer than the step itself leads to another path.
             let distance = (self.product(&at_share, &at_share) + share * share).sqrt();
             if !size.is_finite() || size > 2.0 * last || distance > step {
                 return None;

@@ -1,7 +1,7 @@
 //! Pseudo-transient relaxation: the string creeps from where it is to rest, through a viscous medium.
 //!
-//! `c x' = R(x)` for the lateral displacements, by implicit Euler steps that are each solved in full (Kelley and Keyes 1998): however stiff the wall, a
-//! step that is short enough has a solution next to its start, and where the string is stable what it creeps to is an equilibrium. Steps become
+//! `c x' = R(x)` for the lateral displacements, by implicit Euler steps that are each solved in full (Kelley and Keyes 1998). However stiff the wall,
+//! a step that is short enough has a solution next to its start, and if the string is stable, it creeps to an equilibrium. Steps become
 //! longer as long as they are solved easily.
 
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
@@ -12,20 +12,20 @@ use crate::solve::model::{Model, NodalVector};
 /// Drag c over the step, per length \[N/m2\], of the first step.
 const FIRST_DRAG: f64 = 1e6;
 
-/// Drag at which a step is one of Newton's without any: far below what the weight of a string exerts over its clearance.
+/// Drag at which a step is a Newton step without drag: far below the force of a string's weight over its clearance.
 const NO_DRAG: f64 = 1.0;
 
 /// Drag at which steps have become so short that the search is given up.
 const MOST_DRAG: f64 = 1e14;
 
-/// By how much the drag falls after a step, and grows where one is not solved.
+/// Factors by which the drag falls after a solved step, and grows after a failed one.
 const SLACKEN: f64 = 0.3;
 const TIGHTEN: f64 = 8.0;
 
 /// Iterations within which a step has to be solved.
 const MOST_ITERATIONS: usize = 12;
 
-/// Iterations up to which it was easy.
+/// Iterations up to which a step was solved easily.
 const EASY: usize = 6;
 
 /// Last correction at which a step is solved, in the largest displacement (or 1 m, 1 rad).
@@ -34,7 +34,7 @@ const SOLVED: f64 = 1e-7;
 /// Linearisations after which the search is given up.
 const MOST_LINEARISATIONS: usize = 3000;
 
-/// Moves `displacement` to where the string comes to rest under `load`; `None` where it does not.
+/// Moves `displacement` to the position of rest under `load`; `None` if the string does not come to rest.
 pub(super) fn settle(
     model: &Model,
     load: &[[f64; DOFS]],

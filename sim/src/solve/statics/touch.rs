@@ -4,7 +4,7 @@ use crate::force::contact::{StaticContactForce, StaticSegmentForce, Wall, static
 use crate::math::dof::{DOFS, U, V};
 use crate::solve::model::element_values;
 
-/// The quasi-static contact force of a node, where it touches.
+/// Quasi-static contact force of a node; `None` if it does not touch.
 pub(super) fn contact_at(
     wall: &Wall,
     node: usize,
@@ -16,7 +16,7 @@ pub(super) fn contact_at(
     (contact.penetration > 0.0).then_some(contact)
 }
 
-/// The quasi-static contact along an element, where it touches.
+/// Quasi-static contact along an element; `None` if it does not touch.
 pub(super) fn contact_along(
     wall: &Wall,
     element: usize,

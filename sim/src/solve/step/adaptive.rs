@@ -6,13 +6,13 @@ use crate::force::wall::SweepChange;
 
 /// Errors that a step may leave, for a tolerance on the statistics of a run.
 ///
-/// Between events steps leave errors that are small and alike, of period and damping of what vibrates, and a limit cycle adds them up for as long
-/// as it remembers: some ten seconds where its growth is 0.1 1/s. So a step may leave the part of the tolerance that the longest step of that
-/// tolerance is of the memory, in lateral displacements and, since friction feeds torsion, in the turning of the surface. Steps that are shorter than the longest
-/// are made for single events, impacts and captures, which are not repeated in every step: they may leave as much.
+/// Between events, steps leave small and similar errors, of the period and damping of vibrations, and a limit cycle adds them up as long
+/// as it remembers: some ten seconds if its growth is 0.1 1/s. A step may therefore leave a part of the tolerance: the ratio of the longest step of
+/// that tolerance to the memory. This holds for lateral displacements and, since friction excites torsion, for the rotation of the surface. Shorter
+/// steps are made for single events, impacts and slip-to-stick transitions, which do not recur in every step: they may leave as much.
 ///
-/// A node that sticks and slips shows more of a step than any displacement: friction is as steep as 1 / v_ref at rest, so that the error
-/// of its coefficient, the error of the sliding speed times the slope of the curve, is checked wherever nodes touch. The changes of the
+/// A node that sticks and slips is more sensitive to a step than any displacement: friction is as steep as 1 / v_ref at rest. The error
+/// of its coefficient, the error of the sliding speed times the slope of the curve, is therefore checked at all touching nodes. The changes of the
 /// last contact iteration show whether the contacts converged. The shares of the tolerance are from comparisons with converged runs
 /// over whole runs (`tests/whole_runs.rs`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,14 +23,14 @@ pub(crate) struct Tolerances {
     friction: f64,
     /// Change in the last contact iteration: of a lateral displacement relative to the motion, and of a friction coefficient.
     sweep: SweepChange,
-    /// The smallest motion that errors are related to \[m\].
+    /// Smallest motion for relative errors \[m\].
     smallest_motion: f64,
 }
 
 /// Errors that a step leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StepError {
-    /// Local error of the lateral displacements and of the surface's by the twist, root mean square over the nodes \[m\].
+    /// Local error of the lateral displacements and of the surface's displacement by the twist, root mean square over the nodes \[m\].
     pub(crate) displacement: f64,
     /// Largest local error of a friction coefficient.
     pub(crate) friction: f64,
@@ -38,11 +38,11 @@ pub(crate) struct StepError {
     pub(crate) sweep: SweepChange,
 }
 
-/// Motion below this part of the hole's radius counts as this much: 10 um in a hole of 0.2 m, so that a string that hardly moves does not ask
-/// for steps that resolve nothing.
+/// Smallest motion, relative to the hole's radius; smaller motion counts as this much. It is 10 um in a hole of 0.2 m, so that a string that hardly
+/// moves does not need steps that resolve nothing.
 pub const SMALLEST_MOTION: f64 = 1e-4;
 
-/// The smallest motion \[m\] that the steps of a run are asked to resolve, root mean square over its nodes, in a hole of radius `hole_radius` \[m\].
+/// Smallest motion \[m\] that the steps of a run must resolve, root mean square over its nodes, in a hole of radius `hole_radius` \[m\].
 pub(crate) fn smallest_motion(hole_radius: f64) -> f64 {
     SMALLEST_MOTION * hole_radius
 }
@@ -50,16 +50,16 @@ pub(crate) fn smallest_motion(hole_radius: f64) -> f64 {
 /// The embedded method is of order 3: a local error falls with the fourth power of the step.
 const LOCAL_ORDER: f64 = 4.0;
 
-/// Error, relative to what is allowed, below which a step of twice the length is tried: it would leave two thirds.
+/// Error, relative to the allowed one, below which a step of twice the length is tried: it would leave two thirds.
 const ROOM_TO_DOUBLE: f64 = 0.04;
 
-/// Time over which errors of steps are taken to add up \[s\]. In stick-slip of four wells steps of 8 ms that leave 6e-3 of the motion a second make orbits
-/// 2 to 8 % wrong, and those of 4 ms that leave 1.2e-3 a second 0.2 to 1 %: it is 8 to 13 s for the mean of a run's steps, and less here, where
-/// every single step has to keep to it.
+/// Time over which errors of steps are taken to add up \[s\]. In stick-slip of four wells, steps of 8 ms that leave 6e-3 of the motion a second make
+/// orbits 2 to 8 % wrong, and those of 4 ms that leave 1.2e-3 a second 0.2 to 1 %. That corresponds to 8 to 13 s for the mean of a run's steps, and
+/// to less here, since every single step has to meet the bound.
 const MEMORY: f64 = 5.0;
 
 impl Tolerances {
-    /// For a relative tolerance on statistics, in a hole of radius `hole_radius` \[m\].
+    /// Tolerances for a relative tolerance on statistics, in a hole of radius `hole_radius` \[m\].
     pub(crate) fn new(statistics: f64, hole_radius: f64) -> Self {
         Self {
             displacement: statistics * TimeStepping::adaptive(statistics).step / MEMORY,
@@ -69,7 +69,7 @@ impl Tolerances {
         }
     }
 
-    /// The error of a step relative to what is allowed, for a motion of `motion` \[m\]: up to 1 it is within the tolerance.
+    /// The error of a step relative to the allowed one, for a motion of `motion` \[m\]: up to 1 it is within the tolerance.
     pub(crate) fn relative(&self, error: &StepError, motion: f64) -> f64 {
         let motion = motion.max(self.smallest_motion);
         let parts = [
@@ -78,12 +78,12 @@ impl Tolerances {
             error.sweep.lateral / (self.sweep.lateral * motion),
             error.sweep.friction / self.sweep.friction,
         ];
-        // What is not a number is beyond every tolerance: it is handed on, not compared.
+        // A value that is not a number exceeds every tolerance: it is handed on, not compared.
         parts.into_iter().fold(0.0, |most, part| if part <= most || most.is_nan() { most } else { part })
     }
 }
 
-/// The level of the step after one of `level` that left `error`, relative to what is allowed.
+/// The level of the step after one of `level` that left `error`, relative to the allowed one.
 pub(crate) fn next_level(level: u32, error: f64) -> u32 {
     if error < ROOM_TO_DOUBLE {
         level + 1
@@ -91,24 +91,24 @@ pub(crate) fn next_level(level: u32, error: f64) -> u32 {
         level
     } else {
         let halvings = (error.log2() / LOCAL_ORDER).ceil();
-        // A step that is not finite says nothing of how much shorter it must be.
+        // An error that is not finite does not show how much shorter the step must be.
         level.saturating_sub(if halvings.is_finite() { halvings as u32 } else { 1 })
     }
 }
 
-/// Share of its bound that the ledger's residual may come to before steps are shortened, and below which they may lengthen again: further apart than
-/// what one halving does to it by the order of the method.
+/// Shares of its bound that the ledger's residual may reach: below the first, steps may lengthen; above the second, they are shortened. The two are
+/// further apart than the effect of one halving by the order of the method.
 const RESIDUAL_SHARES: [f64; 2] = [0.01, 0.25];
 
-/// The part of what is left to its bound that the residual may take from one row of the ledger to the next. A residual that grows no faster
+/// Largest growth of the residual from one row of the ledger to the next, as part of its distance from the bound. A residual that grows no faster
 /// approaches the bound and does not reach it.
 const RESIDUAL_GROWTH: f64 = 0.01;
 
-/// The highest level that steps may have until the ledger's next row, after one of `ceiling`: the residual, without its sign, was `before` at the
-/// row before and is `now` at this one, where it may come to `bound` \[J\].
+/// The highest level that steps may have until the ledger's next row, after one of `ceiling`. The residual, without its sign, was `before` at the
+/// last row and is `now` at this one; its bound is `bound` \[J\].
 ///
-/// The local error does not tell of contacts that chatter: each step is accurate for the motion as a whole, and takes energy from vibrations that
-/// it does not resolve, always of the same sign. The ledger adds that up.
+/// The local error does not show contacts that chatter: each step is accurate for the motion as a whole, and takes energy from vibrations that
+/// it does not resolve, always of the same sign. The ledger adds up this energy.
 pub(crate) fn ceiling(ceiling: u32, [before, now]: [f64; 2], bound: f64) -> u32 {
     let [low, high] = RESIDUAL_SHARES;
     if now > high * bound && now - before > RESIDUAL_GROWTH * (bound - now) {

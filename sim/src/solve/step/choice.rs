@@ -10,7 +10,7 @@ use crate::solve::model::Model;
 use crate::solve::modes::UndampedTorsion;
 use crate::solve::statics::Equilibrium;
 
-/// Steps of a run of the model's scenario with a stepping of its choice: exact for fixed steps, expected for ESDIRK4 with a tolerance, and
+/// Number of steps of a run of the model's scenario with a given stepping: exact for fixed steps, expected for ESDIRK4 with a tolerance, and
 /// none for RK4 with one.
 pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     let adapts = stepping.tolerance.is_some();
@@ -27,7 +27,7 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     Some(longest + of_friction)
 }
 
-/// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`] says: from the methods'
+/// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`] defines it: from the methods'
 /// amplification of an undamped oscillation.
 pub fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     let angle = match integrator {
@@ -38,16 +38,16 @@ pub fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     angle / (std::f64::consts::TAU * step)
 }
 
-/// The longest step \[s\] of a run that is to resolve the torsion that velocity-weakening friction feeds.
+/// The longest step \[s\] of a run that must resolve the torsion that velocity-weakening friction excites.
 pub(crate) fn resolving_step(model: &Model, equilibrium: &Equilibrium) -> f64 {
     let stepping = model.scenario.accuracy.time_stepping();
     let torsion = if resolves_torsion(&stepping) { UndampedTorsion::about(model, equilibrium) } else { None };
     torsion_step(&stepping, torsion.as_ref())
 }
 
-/// The longest step \[s\] that a stepping takes where `torsion` grows: what resolves the highest mode for one that is to resolve it, which
-/// adapts its steps to the tolerance of the reference or a smaller one, and no bound for others. Where torsion grows up to
-/// the end of the mesh no step resolves it all; what lies beyond [`FINEST_TORSION_STEP`] the method damps.
+/// The longest step \[s\] of a stepping if `torsion` grows. A stepping that adapts its steps to the tolerance of the reference or a smaller one
+/// must resolve the highest growing mode; others have no bound. If torsion grows up to
+/// the end of the mesh, no step resolves it all; the method damps the modes beyond [`FINEST_TORSION_STEP`].
 pub fn torsion_step(stepping: &TimeStepping, torsion: Option<&UndampedTorsion>) -> f64 {
     match torsion.and_then(UndampedTorsion::resolving_step) {
         Some(step) if resolves_torsion(stepping) => step.max(FINEST_TORSION_STEP),
@@ -63,11 +63,11 @@ fn resolves_torsion(stepping: &TimeStepping) -> bool {
         })
 }
 
-/// Shortest step \[s\] that torsion alone is a reason for. ESDIRK4 damps torsion above a kilohertz there; with shorter ones single elements, at
+/// Shortest step \[s\] for the sake of torsion alone. With it, ESDIRK4 damps torsion above a kilohertz; with shorter steps single elements, at
 /// some kilohertz, grow in a model without stiffness-proportional damping.
 const FINEST_TORSION_STEP: f64 = 1.25e-4;
 
-/// The longest step \[s\] that a run of the model's scenario is expected to make with a stepping of its choice.
+/// Longest step \[s\] expected in a run of the model's scenario with a given stepping.
 pub fn longest_step(model: &Model, stepping: TimeStepping) -> f64 {
     if stepping.integrator == Integrator::Rk4 {
         return stepping.step;
@@ -81,8 +81,8 @@ fn expected_grid(model: &Model, stepping: TimeStepping) -> Grid {
     Grid::new(1.0 / model.scenario.recording.rate_hz, stepping.step / f64::from(subdivisions), 0)
 }
 
-/// Steps a second \[1/s\] that a run which adapts them makes beyond those of the longest length if nodes stick and slip: 50 to 190 in the damped
-/// scenarios at any accuracy, none in that of 1,000 m.
+/// Additional steps a second \[1/s\], beyond those of the longest length, of a run with adaptive steps if nodes stick and slip: 50 to 190 in the
+/// damped scenarios at any accuracy, none in that of 1,000 m.
 const STEPS_OF_FRICTION: f64 = 110.0;
 
 /// The largest stable step of RK4 \[s\] for a model about its equilibrium.

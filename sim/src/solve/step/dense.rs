@@ -1,7 +1,7 @@
 //! Motion between the two ends of a step.
 
 /// Displacements and velocities at the part `theta` of a step of `h` seconds, from displacement, velocity and acceleration at its
-/// start and at its end: the polynomial of degree 5 that has all six (quintic Hermite interpolation), whose error is of order
+/// start and at its end: the polynomial of degree 5 with these six values (quintic Hermite interpolation), whose error is of order
 /// h^6 in displacements and h^5 in velocities.
 pub(crate) fn within<const D: usize>(
     h: f64,
@@ -9,7 +9,7 @@ pub(crate) fn within<const D: usize>(
     [x0, v0, a0]: &[[f64; D]; 3],
     [x1, v1, a1]: &[[f64; D]; 3],
 ) -> ([f64; D], [f64; D]) {
-    // With the Taylor polynomial of the start taken out, what is left of the three values at the end fixes the three highest powers.
+    // Without the Taylor polynomial of the start, the three values at the end fix the three highest powers.
     let mut x = [0.0; D];
     let mut v = [0.0; D];
     for dof in 0..D {

@@ -2,7 +2,7 @@
 //!
 //! Work is force times the scheme's own displacement: for generalized-alpha the forces of the level at which a
 //! step balances along the step, for the Runge-Kutta methods the stage powers with the method's weights. Contact power
-//! evaluated at step ends instead gives even the wrong sign once contacts chatter. What is left between the
+//! evaluated at step ends instead has even the wrong sign once contacts chatter. The difference between the
 //! change of energy and the sum of all work is the integration's own error.
 
 use std::ops::Index;
@@ -26,7 +26,7 @@ fn working() -> impl Iterator<Item = &'static Account> {
     DAMPING.into_iter().flatten()
 }
 
-/// One row of the ledger; all values but the time \[J\] since the start of the transient. Its columns are asked for by
+/// One row of the ledger; all values but the time \[J\] since the start of the transient. Its columns are indexed by
 /// [name](EnergyRow::COLUMNS).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyRow {
@@ -42,7 +42,7 @@ pub struct EnergyRow {
     pub residual: f64,
 }
 
-/// Share of the energy turned over that a run may leave over. A tenth is a coarse run's; half of it and more was seen only in runs
+/// Largest residual of a run, as share of the energy turned over. A tenth is a coarse run's; half and more was seen only in runs
 /// whose contact forces no longer fit their motion.
 const LARGEST_RESIDUAL: f64 = 0.5;
 
@@ -70,7 +70,7 @@ impl EnergyRow {
         self[account.name]
     }
 
-    /// Energy that the vibration has turned over \[J\]: what it holds and all work done on it, without what the drive passes straight
+    /// Energy that the vibration has turned over \[J\]: its own energy and all work done on it, without the work that the drive passes straight
     /// on to steady sliding.
     pub fn turned_over(&self) -> f64 {
         let (mut turned_over, mut passed_on) = (self.kinetic + self.stored.abs(), 0.0);
@@ -112,7 +112,7 @@ pub(crate) struct Ledger<const D: usize> {
     mass: BlockTridiagonal<D>,
     stiffness: BlockTridiagonal<D>,
     load: NodalVector<D>,
-    /// Symmetric: of the accounts of damping. Skew: what in the stiffness has no potential.
+    /// Symmetric: of the accounts of damping. Skew: of the stiffness without a potential.
     forms: Forms<WORKING, D>,
     wall: Wall,
     /// Places of the wall's works among [`ENTRIES`]: normal forces, friction, rotation.
@@ -157,7 +157,8 @@ impl<const D: usize> Ledger<D> {
         ledger
     }
 
-    /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the forces that it was solved with. It keeps the vectors and leaves others of their size.
+    /// Books a stage that counts `weight` seconds (or a step whose mean velocity is `velocity`), with the forces that it was solved with. It keeps
+    /// the vectors and leaves others of their size.
     pub(crate) fn book(
         &mut self,
         weight: f64,
@@ -178,7 +179,7 @@ impl<const D: usize> Ledger<D> {
         }
     }
 
-    /// Books what the matrices do along stages: the seconds that each counts, its velocities and displacements.
+    /// Books the work of the matrices along stages: the seconds that each counts, its velocities and displacements.
     pub(crate) fn book_matrices<const K: usize>(&mut self, stages: [BookedStage<'_, D>; K]) {
         self.forms.add(stages);
     }
@@ -196,7 +197,7 @@ impl<const D: usize> Ledger<D> {
         for (i, group) in acting.wall.touching() {
             let (x, rates) = (&displacement.groups()[i], &velocity.groups()[i]);
             let (u_rate, v_rate) = (rates[U], rates[V]);
-            // The wall pushed along the radius that the force was evaluated at, next to that of the solution.
+            // The wall pushed along the radius at which the force was evaluated, which is next to that of the solution.
             let normal = contact::power(group.normal_force, group.radius, [x[U], x[V]], [u_rate, v_rate]);
             let twist_power = self.freedoms.twist().map_or(zero, |twist| rates[twist] * group.torque);
             let whole = u_rate.mul_add(group.force[U], v_rate.mul_add(group.force[V], twist_power));
@@ -219,7 +220,7 @@ impl<const D: usize> Ledger<D> {
 
     /// Adds the work of the stages gathered so far.
     fn flush(&mut self) {
-        // Both forms are what the matrices take from the motion.
+        // Both forms are work that the matrices take from the motion.
         let Integrals { symmetric, skew } = self.forms.take();
         for ((work, account), taken) in self.work.damping.iter_mut().zip(working()).zip(symmetric) {
             *work = match account.side {
@@ -230,12 +231,12 @@ impl<const D: usize> Ledger<D> {
         self.work.follower -= skew;
     }
 
-    /// The books as they stand, to come back to if the steps that follow are rejected.
+    /// State of the books, to return to if the steps that follow are rejected.
     pub(crate) fn mark(&mut self) -> Work {
         self.work()
     }
 
-    /// Forgets all stages since the mark.
+    /// Removes all stages since the mark.
     pub(crate) fn roll_back(&mut self, mark: Work) {
         self.forms.forget();
         self.work = mark;
@@ -273,8 +274,8 @@ impl<const D: usize> Ledger<D> {
         EnergyRow { time, kinetic, stored: structure + wall, accounts, residual: gained - balance }
     }
 
-    /// Largest residual that a row may leave \[J\]. If the string `hardly_moves`, steps are not required to resolve how: a method that
-    /// damps what it does not resolve may then take all that is turned over, and no balance leaves more.
+    /// Largest residual that a row may leave \[J\]. If the string `hardly_moves`, steps need not resolve its motion: a method that
+    /// damps unresolved motion may then take all the energy turned over, and no balance leaves more.
     pub(crate) fn bound(&self, row: &EnergyRow, hardly_moves: bool) -> f64 {
         let share = if hardly_moves { 1.0 } else { LARGEST_RESIDUAL };
         share * row.turned_over() + self.rounding

@@ -1,4 +1,4 @@
-//! The error that time integration makes, estimated from what each step leaves.
+//! Estimate of the error of time integration from the local errors of its steps.
 
 use drillsweep_scenario::Integrator;
 use serde::{Deserialize, Serialize};
@@ -8,11 +8,11 @@ use crate::math::linalg::{Four, Lane, NodalField};
 
 /// Estimated error of the run's lateral displacements.
 ///
-/// Each step's local error is what the embedded method of order 3 (ESDIRK4, RK4), step doubling (adaptive RK4) or the
-/// Taylor series (generalized-alpha) says about it. Contact makes the steps' errors look independent, so their squares add up; how
-/// much of that sum is left in the motion is calibrated once a method against converged runs. It
-/// is an estimate for the *history*. Once impacts have made histories part from each other, no step makes it true, and
-/// only statistics mean something: ensembles tell when that is.
+/// Each step's local error is estimated by the embedded method of order 3 (ESDIRK4, RK4), step doubling (adaptive RK4) or the
+/// Taylor series (generalized-alpha). Contact makes the steps' errors look independent, so their squares add up; the
+/// part of that sum that remains in the motion is calibrated once a method against converged runs. It
+/// is an estimate for the *history*. Once impacts have made histories part from each other, no step makes a history true, and
+/// only statistics have a meaning: ensembles show from which time on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ErrorEstimate {
     /// Root mean square over all nodes of the error of a lateral displacement at the end of the run \[m\].
@@ -33,8 +33,8 @@ pub(crate) struct ErrorSum {
 
 /// Factor on the root of the summed squares of local errors.
 ///
-/// Over the calibration scenes (`tests/error_estimate.rs`) the true error is 0.6 to 6 times that root for
-/// generalized-alpha, 15 to 150 times for ESDIRK4 (whose embedded method sees little of a contact's kink) and 4 to 60
+/// Over the calibration scenarios (`tests/error_estimate.rs`) the true error is 0.6 to 6 times that root for
+/// generalized-alpha, 15 to 150 times for ESDIRK4 (whose embedded method hardly sees a contact's kink) and 4 to 60
 /// times for RK4; each factor is near the upper end, so that the estimate covers the error.
 fn calibration(integrator: Integrator) -> f64 {
     match integrator {

@@ -42,7 +42,7 @@ const STRICTLY_LOWER: [[f64; STAGES - 1]; STAGES] = [
 const WEIGHTS: [f64; STAGES] =
     [82889.0 / 524892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102672.0, -2260.0 / 8211.0, DIAGONAL];
 
-/// Weights less those of the embedded method of order 3: what they make of the stages is an error of the step.
+/// Weights less those of the embedded method of order 3: their sum over the stages is an error of the step.
 const ERROR_WEIGHTS: [f64; STAGES] = [
     WEIGHTS[0] - 4586570599.0 / 29645900160.0,
     0.0,
@@ -52,7 +52,7 @@ const ERROR_WEIGHTS: [f64; STAGES] = [
     WEIGHTS[5] - 61727.0 / 225920.0,
 ];
 
-/// Of every stage of a step \[s\].
+/// Coefficients of every stage of a step \[s\].
 pub(crate) fn stage_coefficients(step: f64) -> StageCoefficients {
     let c = 1.0 / (DIAGONAL * step);
     StageCoefficients { acceleration: c * c, velocity: c }
@@ -64,11 +64,11 @@ pub(crate) struct Esdirk<const D: usize> {
     /// Steps \[s\] that can be made, the shortest first, with the matrices of their stages.
     levels: Vec<(f64, StageMatrix<D>)>,
     solver: StageSolver<D>,
-    /// Of the stages after the first, which is the state at the step's start.
+    /// Stages after the first, which is the state at the step's start.
     stages: [Stage<D>; STAGES - 1],
     /// Powers at all stages.
     powers: [Work; STAGES],
-    /// Of the attempted step: sum of the squares of the lateral displacements' local errors \[m2\].
+    /// Sum of the squares of the lateral displacements' local errors in the attempted step \[m2\].
     local_error: f64,
     acceleration_offset: NodalField<D>,
     velocity_offset: NodalField<D>,
@@ -136,7 +136,7 @@ impl<const D: usize> Method<D> for Esdirk<D> {
 }
 
 impl<const D: usize> Esdirk<D> {
-    /// For the steps of all levels of `grid`.
+    /// Stepper for the steps of all levels of `grid`.
     pub(crate) fn new(
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
@@ -168,7 +168,7 @@ impl<const D: usize> Esdirk<D> {
         })
     }
 
-    /// Solves the stages of a step of `level` from `state` at `time`, where forces are `acting`; neither the state nor any book
+    /// Solves the stages of a step of `level` from `state` at `time`, at which the forces are `acting`; neither the state nor any book
     /// changes.
     fn attempt(
         &mut self,
@@ -221,7 +221,7 @@ impl<const D: usize> Esdirk<D> {
             (w5, &s5.velocity, &s5.displacement),
         ]);
         errors.add(self.local_error);
-        // What the state held before is overwritten in the next step.
+        // The next step overwrites the former values of the state.
         let Stage { displacement, velocity, acceleration, unknowns, unknown_rates } =
             &mut self.stages[STAGES - 2];
         std::mem::swap(&mut state.displacement, displacement);
@@ -263,7 +263,7 @@ impl<const D: usize> Esdirk<D> {
         }
     }
 
-    /// Sum of the squares of the lateral displacements' local errors \[m2\], as the embedded method of order 3 gives them.
+    /// Sum of the squares of the lateral displacements' local errors \[m2\] by the embedded method of order 3.
     fn displacement_error(&self, h: f64, state: &State<D>) -> f64 {
         let error = self.embedded_error(h, &state.velocity, |stage| &stage.velocity);
         let mut sums = [Four::splat(0.0); LATERAL];
@@ -320,7 +320,7 @@ impl<const D: usize> Esdirk<D> {
         }
     }
 
-    /// Offsets of a stage from those before it, and what its solution starts from.
+    /// Offsets of a stage from the earlier ones, and the start of its solution.
     fn predict(&mut self, h: f64, stage: usize, state: &State<D>) {
         let c = STRICTLY_LOWER[stage].map(|a| h * a);
         match stage {
@@ -332,7 +332,7 @@ impl<const D: usize> Esdirk<D> {
         }
     }
 
-    /// With the earlier stages that count, and what their rates are multiplied with \[s\].
+    /// Prediction from the earlier stages that count, with the factors of their rates \[s\].
     fn predict_from<const K: usize>(
         &mut self,
         h: f64,

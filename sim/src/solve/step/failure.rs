@@ -8,10 +8,10 @@ pub enum TransientError {
     /// A matrix cannot be factored.
     #[error("the matrix of a step is singular at node {}", .0.row + 1)]
     Singular(#[from] SingularBlock),
-    /// A fixed step beyond the explicit method's stability limit.
+    /// A fixed step is beyond the explicit method's stability limit.
     #[error("a step of {step:.3e} s is beyond the stability limit of rk4 for this mesh, {limit:.3e} s")]
     StepBeyondStability {
-        /// The step asked for \[s\].
+        /// Requested step \[s\].
         step: f64,
         /// The largest stable one \[s\].
         limit: f64,
@@ -22,14 +22,14 @@ pub enum TransientError {
          its mass; an accuracy with a tolerance (draft, standard, reference) adapts its steps to it"
     )]
     ContactTooStiff {
-        /// The step asked for \[s\].
+        /// Requested step \[s\].
         step: f64,
         /// Parts into which a step may be cut.
         most: u32,
         /// The node with the stiffest contact for its mass, from 1.
         node: usize,
     },
-    /// The samples cannot be kept, or those of a suspended run are not there.
+    /// The samples cannot be kept, or those of a suspended run are missing.
     #[error("the recorded samples cannot be kept: {0}")]
     Histories(String),
     /// The motion left every bound.
@@ -60,7 +60,7 @@ pub enum DivergenceReason {
         /// Radius of the hole \[m\].
         hole_radius: f64,
     },
-    /// More energy appeared or vanished than the method may make of it.
+    /// The energy balance is off by more than the method's error allows.
     #[error(
         "the energy ledger leaves {residual:.3e} J, more than its bound of {bound:.3e} J: the steps are too long for this contact"
     )]
@@ -76,7 +76,7 @@ pub enum DivergenceReason {
 }
 
 impl TransientError {
-    /// The node where the failure shows, from 1; absent where it is the whole string's.
+    /// Node with the first sign of the failure, from 1; absent if it is the whole string's.
     pub fn node(&self) -> Option<usize> {
         match self {
             Self::Singular(block) => Some(block.row + 1),

@@ -9,7 +9,7 @@ use crate::math::linalg::{Four, InverseBands, Lane, NodalField};
 use crate::solve::model::Model;
 use crate::solve::motion::DynamicSystem;
 
-/// Everything that pushes the string.
+/// All forces on the string.
 #[derive(Debug, Clone)]
 pub(crate) struct Forces<const D: usize> {
     pub(crate) load: NodalField<D>,
@@ -28,7 +28,7 @@ pub(crate) struct ActingForces {
     pub(crate) unknowns: Vec<f64>,
 }
 
-/// Motion that nodes make of their own forces in the solves of a stage matrix.
+/// Compliance of nodes to their own forces in the solves of a stage matrix.
 #[derive(Debug, Clone)]
 pub(crate) struct StageCompliance {
     wall: Compliance,
@@ -40,7 +40,7 @@ pub(crate) struct StageCompliance {
 /// Time and state at which forces are evaluated, with the stage that their unknowns are solved in.
 #[derive(Clone, Copy)]
 pub(crate) struct StageAt<'a> {
-    /// \[s\].
+    /// Time \[s\].
     pub(crate) time: f64,
     /// Unknowns and memory at the step's start.
     pub(crate) state: &'a PointState,
@@ -48,7 +48,7 @@ pub(crate) struct StageAt<'a> {
 }
 
 impl ActingForces {
-    /// None on a string.
+    /// Zero forces.
     pub(crate) fn none<const D: usize>(forces: &Forces<D>) -> Self {
         Self {
             wall: ContactForces::none(&forces.wall),
@@ -92,8 +92,8 @@ impl<const D: usize> Forces<D> {
         self.points.add_of_time(time, &mut out.points, external);
     }
 
-    /// Forces of a motion into `out`, and in `all` their sum with the `external` ones. `rates` gives the rate of a degree of freedom of a group of
-    /// nodes. Held degrees of freedom keep what is external.
+    /// Writes the forces of a motion to `out`, and their sum with the `external` ones to `all`. `rates` returns the rate of a degree of freedom of a
+    /// group of nodes. Held degrees of freedom keep the external forces.
     pub(crate) fn add_of_motion(
         &self,
         (time, state): (f64, &PointState),
@@ -122,7 +122,7 @@ impl<const D: usize> Forces<D> {
         }
     }
 
-    /// The same with forces that agree with the motion that they make: on entry `out` holds those that the motion was found with.
+    /// The same with forces that agree with the motion that they cause; on entry `out` holds the forces that the motion was found with.
     #[inline(always)]
     pub(crate) fn add_implicit(
         &self,
@@ -180,7 +180,7 @@ impl<const D: usize> Forces<D> {
         NodeMotion { displacement, velocity }
     }
 
-    /// Takes back what forces add at held degrees of freedom.
+    /// Removes forces at held degrees of freedom.
     #[inline]
     fn hold(&self, external: &NodalField<D>, all: &mut NodalField<D>) {
         for &place in &self.held {

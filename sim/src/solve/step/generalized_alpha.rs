@@ -8,13 +8,13 @@ use crate::force::points::UnknownStage;
 use crate::math::linalg::{Four, Lane, NodalField, SingularBlock};
 use crate::solve::motion::DynamicSystem;
 
-/// Spectral radius at infinite frequency where none is asked for. One (the trapezium rule) must not be used with a fixed number of
-/// contact iterations: it damps nothing of what they leave over, and the contacts' work becomes wrong by orders of magnitude while every
+/// Default spectral radius at infinite frequency. One (the trapezium rule) must not be used with a fixed number of
+/// contact iterations: it does not damp their remaining errors, and the contacts' work becomes wrong by orders of magnitude while every
 /// value stays finite (docs/model/motion.md, Generalized-alpha).
 pub(crate) const SPECTRAL_RADIUS: f64 = 0.8;
 
 /// Angle \[rad\] of an oscillation in a step up to which its period is right to a thousandth at the usual spectral radius (it errs by
-/// 0.088 angle^2); its amplitude in each period is, too.
+/// 0.088 angle^2), and its amplitude in each period too.
 pub(crate) const RESOLVED_ANGLE: f64 = 0.1;
 
 /// Parameters that follow from the spectral radius: (alpha_m, alpha_f, beta, gamma).
@@ -40,7 +40,7 @@ impl UnknownParameters {
     }
 }
 
-/// Of the level at which a step \[s\] balances.
+/// Coefficients of the level at which a step \[s\] balances.
 pub(crate) fn stage_coefficients(step: f64, spectral_radius: f64) -> StageCoefficients {
     let (alpha_m, alpha_f, beta, gamma) = parameters(spectral_radius);
     StageCoefficients {
@@ -146,7 +146,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         std::mem::swap(&mut state.displacement, &mut self.next_displacement);
         std::mem::swap(&mut state.velocity, &mut self.velocity_offset);
         std::mem::swap(&mut state.acceleration, &mut self.acceleration_offset);
-        // The Taylor series of a step has h^2/6 where the method has h^2 beta before the change of acceleration.
+        // The Taylor series of a step has h^2/6; the method has h^2 beta before the change of acceleration.
         let (before, after) = (&self.acceleration_offset, &state.acceleration);
         let factor = Four::splat(h * h * (beta - 1.0 / 6.0));
         let (before, after) = (before.groups(), after.groups());
@@ -182,7 +182,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         }
     }
 
-    /// Offsets of the step's level, and what its solution starts from.
+    /// Offsets of the step's level, and the start of its solution.
     fn predict(&mut self, state: &State<D>) {
         let c = LevelCoefficients::new(self.step, self.spectral_radius);
         let n = state.displacement.groups().len();
@@ -210,7 +210,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
 struct LevelCoefficients {
     step_to_level: Four,
     half_step: Four,
-    /// Of displacement, velocity and acceleration in a^.
+    /// Factors of displacement, velocity and acceleration in a^.
     acceleration: [Four; 3],
     /// The same in v^.
     velocity: [Four; 3],
@@ -241,12 +241,12 @@ impl LevelCoefficients {
 
 /// Coefficients of a step's level and start in its end.
 struct EndCoefficients {
-    /// 1 / (1 - alpha_f): draws the change up to the level out to the whole step.
+    /// 1 / (1 - alpha_f): extends the change up to the level to the whole step.
     drawn_out: Four,
     per_step: Four,
-    /// Of the mean velocity less that at the start, and of the acceleration at the start, in the acceleration at the end.
+    /// Factors of the mean velocity less that at the start, and of the acceleration at the start, in the acceleration at the end.
     acceleration: [Four; 2],
-    /// Of the accelerations at the start and at the end in the velocity at the end.
+    /// Factors of the accelerations at the start and at the end in the velocity at the end.
     velocity: [Four; 2],
 }
 

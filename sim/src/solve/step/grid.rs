@@ -56,7 +56,7 @@ impl Grid {
     }
 }
 
-/// Doublings of the recording interval that a step may have at most: 65,536 samples a step, more than any longest step spans, and powers of two
+/// Largest number of doublings of the recording interval in a step: 65,536 samples a step, more than any longest step spans, and powers of two
 /// that stay within their type.
 const MOST_DOUBLINGS: u32 = 16;
 

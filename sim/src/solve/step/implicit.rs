@@ -3,9 +3,10 @@
 //! At a stage the velocities and accelerations are linear in the unknown displacements,
 //! `v = v^ + c_v x` and `a = a^ + c_a x`, so that the equations of motion become
 //! `(c_a M + c_v C + K) x = F_external + F_contact(x, v) - M a^ - C v^`. The matrix A0 is factored once for each step length.
-//! Contact stays on the right-hand side and is re-evaluated in each sweep, implicitly at each node: the blocks on the diagonal
-//! of A0^-1 show how a node gives way to its own contact force, and the force is the one that agrees with that. So a node that sticks,
-//! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is held in the first sweep; what sweeps still
+//! Contact stays on the right-hand side and is re-evaluated in each contact iteration, implicitly at each node: the blocks on the diagonal
+//! of A0^-1 are the compliance of a node to its own contact force, and the force is the one that agrees with it. A sticking node,
+//! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is therefore held in the first iteration. The iterations
+//! have to converge only in the forces of nodes on each other.
 //! have to converge to is what nodes do to each other.
 
 use super::forces::{ActingForces, Forces, StageAt, StageCompliance};
@@ -17,12 +18,12 @@ use crate::math::linalg::{
 use crate::solve::model::NodalVector;
 use crate::solve::motion::DynamicSystem;
 
-/// Changes between two sweeps at which more sweeps are pointless: of a lateral displacement \[m\], which is 0.01 N of contact force at
+/// Changes between two contact iterations at which more of them are pointless: of a lateral displacement \[m\], which is 0.01 N of contact force at
 /// 1e7 N/m, and of a friction coefficient.
 const CONVERGED: SweepChange = SweepChange { lateral: 1e-9, friction: 1e-6 };
 
-/// Changes of the last sweep beyond which a solve counts as loose: 1e-5 m is 100 N of contact force at 1e7 N/m, the weight of some decimetres
-/// of drillpipe, and 0.05 a sixth to a quarter of usual friction coefficients. It is counted, and decides nothing.
+/// Changes of the last contact iteration beyond which a solve counts as loose: 1e-5 m is 100 N of contact force at 1e7 N/m, the weight of some
+/// decimetres of drillpipe, and 0.05 is a sixth to a quarter of usual friction coefficients. Loose solves are counted and have no other effect.
 const LOOSE: SweepChange = SweepChange { lateral: 1e-5, friction: 0.05 };
 
 /// The matrix of the stages of one step length, factored.
@@ -36,7 +37,7 @@ pub(crate) struct StageMatrix<const D: usize> {
     compliance: StageCompliance,
 }
 
-/// The vectors that the solve of a stage works in, and what all step lengths share.
+/// Vectors of a stage's solve, and data that all step lengths share.
 #[derive(Debug, Clone)]
 pub(crate) struct StageSolver<const D: usize> {
     mass_and_damping: MatrixPair<Symmetric, D>,
@@ -44,18 +45,18 @@ pub(crate) struct StageSolver<const D: usize> {
     sweeps: u32,
     external: NodalField<D>,
     right: NodalField<D>,
-    /// Intermediate values of a solve: left by the way inwards for the way outwards.
+    /// Intermediate values of a solve: written on the way inwards, read on the way outwards.
     between: NodalVector<D>,
     /// Displacements of the stage: the predictor before a solve, the solution after it.
     pub(crate) displacement: NodalField<D>,
     /// The predictor of the velocities.
     pub(crate) velocity: NodalField<D>,
-    /// Displacements of the sweep before.
+    /// Displacements of the contact iteration before.
     previous: NodalField<D>,
-    /// Forces that went into the last sweep.
+    /// Forces of the last contact iteration.
     pub(crate) acting: ActingForces,
     pub(crate) monitor: SweepMonitor,
-    /// Changes by the last sweeps of the solves of a step.
+    /// Changes by the last contact iterations of the solves of a step.
     change: SweepChange,
     /// Largest normal forces in the solves of a step.
     peaks: Vec<Four>,
@@ -66,12 +67,12 @@ pub(crate) struct StageSolver<const D: usize> {
 /// Distance of a run's contact iterations from convergence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SweepMonitor {
-    /// Largest change of a touching node's lateral displacement in the last sweep of any solve \[m\].
+    /// Largest change of a touching node's lateral displacement in the last contact iteration of any solve \[m\].
     pub largest_change: f64,
-    /// Solves whose last sweep still changed a touching node's displacement by more than 1e-5 m or its friction coefficient by more
+    /// Solves whose last contact iteration still changed a touching node's displacement by more than 1e-5 m or its friction coefficient by more
     /// than 0.05.
     pub loose_solves: u64,
-    /// Sweeps made.
+    /// Contact iterations made.
     pub sweeps: u64,
 }
 
@@ -161,14 +162,14 @@ impl<const D: usize> StageSolver<D> {
         }
     }
 
-    /// Begins a step from where forces are `acting`.
+    /// Begins a step from a state with the forces `acting`.
     pub(crate) fn begin_step(&mut self, acting: &ActingForces) {
         self.acting.copy_from(acting);
         self.change = SweepChange::default();
         self.peaks.fill(Four::ZERO);
     }
 
-    /// Changes by the last sweeps of the solves of this step.
+    /// Changes by the last contact iterations of the solves of this step.
     pub(crate) fn change(&self) -> SweepChange {
         self.change
     }
@@ -207,7 +208,7 @@ impl<const D: usize> StageSolver<D> {
                 let (acting, right) = (&mut self.acting, &mut self.right);
                 forces.add_implicit(&matrix.compliance, at, x, rates, acting, (&self.external, right));
             } else {
-                // Few nodes touch: only their velocities are formed between the sweeps.
+                // Few nodes touch: between the contact iterations only their velocities are formed.
                 let (moved, offset) = (x.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
                 let (acting, right) = (&mut self.acting, &mut self.right);
@@ -216,7 +217,7 @@ impl<const D: usize> StageSolver<D> {
             std::mem::swap(&mut self.displacement, &mut self.previous);
             matrix.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
             self.monitor.sweeps += 1;
-            // Two sweeps are a fixed count; more are a cap on the way to convergence.
+            // Two contact iterations are a fixed count; more are a cap on the way to convergence.
             if sweep >= 2 && (self.sweeps > 2 || sweep == self.sweeps) {
                 let (moved, offset) = (self.displacement.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);

@@ -4,7 +4,7 @@ use crate::math::linalg::{
     Block, BlockTridiagonal, Four, Lane, NodalField, SkewPart, WeightedPair, after, can_couple, each_dof,
 };
 
-/// Stages that are gathered before the moments are touched: these then pass through the processor once for all of them.
+/// Number of stages gathered before the moments are updated: the moments then pass through the processor once for all of them.
 const GATHERED: usize = 4;
 
 /// Entries below this share of the matrix' largest entry are rounding of terms that cancel.
@@ -13,9 +13,9 @@ const CANCELLED: f64 = 1e-13;
 /// Time integrals of `v^T S v` with the symmetric parts of several matrices and of `v^T A x` with the skew part of one
 /// more: sums over stages of a weight \[s\] times the form.
 ///
-/// A sum of symmetric forms is the matrix times the sum of the stages' products `v v^T`, entry by entry. So only those products, of
-/// a node with itself and with the next one, are summed, once for all matrices; no matrix is read before the work is asked
-/// for, and the matrices of the time step keep the cache for themselves. The skew matrix is read, for several stages at once.
+/// A sum of symmetric forms is the matrix times the sum of the stages' products `v v^T`, entry by entry. Therefore only those products, of
+/// a node with itself and with the next one, are summed, once for all matrices; no matrix is read before the work is
+/// requested, and the matrices of the time step keep the cache for themselves. The skew matrix is read, for several stages at once.
 #[derive(Debug, Clone)]
 pub(crate) struct Forms<const N: usize, const D: usize> {
     symmetric: [SymmetricPart<D>; N],
@@ -30,7 +30,7 @@ pub(crate) struct Forms<const N: usize, const D: usize> {
     count: usize,
 }
 
-/// A stage as the forms take it: the seconds that it counts, its velocities and displacements.
+/// A stage for the forms: the seconds that it counts, its velocities and displacements.
 pub(crate) type BookedStage<'a, const D: usize> = WeightedPair<'a, D>;
 
 #[derive(Debug, Clone)]
@@ -47,8 +47,8 @@ pub(crate) struct Integrals<const N: usize> {
     pub(crate) skew: f64,
 }
 
-/// Remainder of a matrix' symmetric part, with the nodes where it is: blocks on the diagonal and blocks above it. Between
-/// equal neighbours the Coriolis matrices' boundary terms cancel: theirs lives where the section changes.
+/// Remainder of a matrix' symmetric part, with the nodes that have one: blocks on the diagonal and blocks above it. Between
+/// equal neighbours the Coriolis matrices' boundary terms cancel: their remainder is at changes of the section.
 #[derive(Debug, Clone)]
 struct SymmetricPart<const D: usize> {
     diagonal: Vec<(usize, Block<D>)>,
@@ -95,14 +95,14 @@ impl<const N: usize, const D: usize> Forms<N, D> {
         self.count += 1;
     }
 
-    /// Forgets everything since the last [`Forms::take`].
+    /// Removes everything since the last [`Forms::take`].
     pub(crate) fn forget(&mut self) {
         self.count = 0;
         self.skew_sum = 0.0;
         self.moments.fill(Four::ZERO);
     }
 
-    /// Integrals over the stages since the last take, which are forgotten.
+    /// Integrals over the stages since the last take, which are then removed.
     pub(crate) fn take(&mut self) -> Integrals<N> {
         self.add_gathered();
         let symmetric = self.symmetric.each_ref().map(|part| part.integral(&self.moments, self.last_couples));
@@ -115,7 +115,7 @@ impl<const N: usize, const D: usize> Forms<N, D> {
         if self.count == 0 {
             return;
         }
-        // A stage that is not there counts nothing, and what a rejected step left in its place may not be finite.
+        // A missing stage counts nothing, and the values that a rejected step left in its place may not be finite.
         for stage in &mut self.gathered[self.count..] {
             stage.weight = 0.0;
             stage.velocity.fill_zero();
@@ -182,7 +182,7 @@ fn add_products_where_coupled<const K: usize, const D: usize, const LAST: bool>(
 /// node, then those with all of the next node. If `LAST` is false, the last degree of freedom counts with the two before it alone.
 struct Places<const D: usize, const LAST: bool>;
 
-/// A place that is not there.
+/// A place that does not exist.
 const NOWHERE: usize = usize::MAX;
 
 impl<const D: usize, const LAST: bool> Places<D, LAST> {
@@ -248,7 +248,7 @@ impl<const D: usize> SymmetricPart<D> {
                 }
             }
         }
-        // What stands above the diagonal is mirrored below.
+        // Entries above the diagonal are mirrored below.
         for (node, block) in &self.upper {
             for i in 0..D {
                 for j in (0..D).filter(|&j| can_couple::<D>(i, j, LAST)) {

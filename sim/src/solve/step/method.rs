@@ -29,14 +29,14 @@ pub(crate) trait Method<const D: usize> {
         &[]
     }
 
-    /// Displacements, velocities and accelerations at the start of the last step, between which and its end motion can be interpolated; absent if steps
+    /// Displacements, velocities and accelerations at the start of the last step, for interpolation of the motion up to its end; absent if steps
     /// end at every sample.
     fn start_of_step(&self) -> Option<[&NodalField<D>; 3]> {
         None
     }
 }
 
-/// Step that is to be made.
+/// Step to make.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepAhead<'a> {
     /// Time at its start \[s\].
@@ -48,7 +48,7 @@ pub(crate) struct StepAhead<'a> {
     pub(crate) tolerances: Option<&'a Tolerances>,
 }
 
-/// Step that was made.
+/// Step made.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepMade {
     /// Level of the grid.

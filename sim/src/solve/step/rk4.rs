@@ -1,6 +1,6 @@
 //! The classical Runge-Kutta method of order 4, with step doubling when a tolerance is given: the paper's method.
 //!
-//! Stable up to h = 2.785 / omega_max, about 6e-5 s with tool joints of 0.3 m, whatever the accuracy asked for.
+//! Stable up to h = 2.785 / omega_max, about 6e-5 s with tool joints of 0.3 m, whatever the requested accuracy.
 
 use super::energy::Ledger;
 use super::error_estimate::ErrorSum;
@@ -13,8 +13,8 @@ use crate::math::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, S
 use crate::solve::model::NodalVector;
 use crate::solve::motion::DynamicSystem;
 
-/// Angle \[rad\] of an oscillation in a step up to which its amplitude is right to a thousandth in each period, and the period too: it loses
-/// angle^6 / 144 a step.
+/// Angle \[rad\] of an oscillation in a step up to which its amplitude is right to a thousandth in each period, and the period too: the amplitude
+/// loses angle^6 / 144 a step.
 pub(crate) const RESOLVED_ANGLE: f64 = 0.45;
 
 /// Shortest step relative to the largest: below it the run counts as diverged. With the largest at some 6e-5 s it is 6e-11 s, some
@@ -28,8 +28,8 @@ const DISTANCE_OVER_ERROR: f64 = 15.0;
 /// Local errors fall with the fifth power of the step.
 const PER_LOCAL_ORDER: f64 = 0.2;
 
-/// Part of the step that would just meet the tolerance that is tried next, so that it is likely to be accepted, and bounds of how much
-/// longer the next step is, and how much shorter one is made again (Hairer, Norsett and Wanner 1993, section II.4, with a factor of 0.8 or
+/// Part of the step that would just meet the tolerance that is tried next, so that it is likely to be accepted; then the largest factors by which the
+/// next step lengthens and a repeated one shortens (Hairer, Norsett and Wanner 1993, section II.4, with a factor of 0.8 or
 /// 0.9 and a growth of 1.5 to 5 at most).
 const SAFETY: f64 = 0.9;
 const LONGEST_GROWTH: f64 = 2.0;
@@ -45,7 +45,7 @@ pub(crate) struct Rk4<const D: usize> {
     damping_and_stiffness: MatrixPair<General, D>,
     held: Vec<(usize, usize)>,
     largest_step: f64,
-    /// None means fixed steps.
+    /// Step doubling; absent with fixed steps.
     adaptive: Option<Adaptive<D>>,
     rates: [(NodalField<D>, NodalField<D>); 4],
     stage: (NodalField<D>, NodalField<D>),
@@ -68,9 +68,9 @@ struct Adaptive<const D: usize> {
     /// Local error of a lateral displacement that a pair of steps may make, in hole radii.
     tolerance: f64,
     hole_radius: f64,
-    /// After one long step.
+    /// State after one long step.
     coarse: State<D>,
-    /// After two of half its length.
+    /// State after two steps of half its length.
     fine: State<D>,
 }
 

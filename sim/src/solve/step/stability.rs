@@ -1,4 +1,4 @@
-//! Limits of a step that come before accuracy.
+//! Stability limits of a step, apart from its accuracy.
 
 use drillsweep_scenario::{Integrator, TimeStepping};
 use nalgebra::Complex;
@@ -25,22 +25,22 @@ const RK4_REACH: f64 = 2.785;
 /// searched for its end from this distance to [`RK4_REACH`].
 const RK4_LEAST_REACH: f64 = 2.6;
 
-/// Rays from no to critical damping that are looked at for the largest stable step: neighbours' reaches differ by 2 % at most.
+/// Rays from no to critical damping that are searched for the largest stable step: neighbours' reaches differ by 2 % at most.
 const RAYS: u32 = 100;
 
 /// Iterations for the highest frequency; the ratio to the next ones is close to one, but the Rayleigh quotient
 /// converges with its square. In the base case they leave 1e-5 of the frequency.
 const POWER_ITERATIONS: usize = 300;
 
-/// Parts into which a step is cut at most: 8 ms become 2 us, a thirtieth of what the explicit method needs in the base case. More would be
-/// a run that never ends.
+/// Largest number of parts of a step: 8 ms become 2 us, a thirtieth of the step that the explicit method needs in the base case. With more, a run
+/// would never end.
 const MOST_SUBDIVISIONS: u32 = 4096;
 
-/// Largest factor of a sweep at which two sweeps are enough: they leave a quarter of what the predictor missed.
+/// Largest factor of a contact iteration at which two iterations are enough: they leave a quarter of the predictor's error.
 const LARGEST_SWEEP_FACTOR: f64 = 0.5;
 
-/// Iterations for the largest factor of a sweep, which is compared with one bound. In the base cases with steps of 1 ms, factors of a tenth and
-/// more are within a thousandth of their limits after these, and one of 0.04, far below the bound, within a tenth.
+/// Power iterations for the largest factor of a contact iteration, which is compared with one bound. In the base cases with steps of 1 ms, factors of
+/// a tenth and more are within a thousandth of their limits after these, and one of 0.04, far below the bound, within a tenth.
 const SWEEP_ITERATIONS: usize = 40;
 
 /// The smallest power of two of equal parts into which `step` must be cut for the contact iterations to be stable.
@@ -61,8 +61,8 @@ pub(crate) fn subdivisions(
         Integrator::Esdirk4 => Some(esdirk::stage_coefficients(step)),
         Integrator::Rk4 => None,
     };
-    // A fixed step must do without the help of implicit forces, which contacts that open and close can spoil; one that adapts itself sees
-    // what its sweeps leave.
+    // A fixed step must be stable without implicit forces, since contacts that open and close can spoil their effect; an adaptive step detects the
+    // errors that its contact iterations leave.
     let is_implicit = stepping.integrator == Integrator::Esdirk4 && stepping.tolerance.is_some();
     let mut parts = 1;
     loop {
@@ -85,19 +85,19 @@ pub(crate) fn subdivisions(
 }
 
 /// Subdivisions expected of a run before its equilibrium is known: the same rule for the string without tension, torque and friction,
-/// which hardly matter to how contact pushes single nodes unless the string hardly rotates.
+/// which hardly matter to the effect of contact on single nodes unless the string hardly rotates.
 pub(crate) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u32 {
     let unloaded = Equilibrium::unloaded(model);
     let system = model.dynamic_system(&unloaded);
-    // What fails here fails at the start of the run, which says why.
+    // An error here recurs at the start of the run, which reports it.
     subdivisions(model, &system, &unloaded.normal_force, stepping).unwrap_or(MOST_SUBDIVISIONS)
 }
 
-/// By how much a sweep can multiply an error of the displacements when every node or element is in the wall, and the node that it is largest at,
-/// from 0. A sweep changes the force f of a node to the one that agrees with its motion x as far as the node's own compliance g moves it,
-/// `f' = (s x + s g f) / (1 + s g)` with the wall's slope `s = K_c + c_v C_c`; with `x = -A0^-1 f` for all nodes together that is
-/// `f' = -s / (1 + s g) (A0^-1 - g) f`, so that only what nodes do to each other is left. Friction counts as a damper where it rises with
-/// the sliding speed of the rotation, as it does for a string that hardly turns; beyond, it is bounded by its normal force. With
+/// Largest factor by which a contact iteration multiplies an error of the displacements if every node or element is in the wall, and the node with
+/// the largest error, from 0. An iteration changes the force f of a node to the one that agrees with its motion x as far as the node's own compliance
+/// g moves it, `f' = (s x + s g f) / (1 + s g)` with the wall's slope `s = K_c + c_v C_c`; with `x = -A0^-1 f` for all nodes together that is
+/// `f' = -s / (1 + s g) (A0^-1 - g) f`, so that only the effect of nodes on each other is left. Friction counts as a damper if it rises with
+/// the sliding speed of the rotation, as it does for a string that hardly turns; otherwise it is bounded by its normal force. With
 /// forces that are not implicit the compliances count as zero.
 fn sweep_factor(
     model: &Model,
@@ -122,7 +122,7 @@ fn sweep_factor(
         let lateral = stiffness * wall.stiffness_share + damping * wall.damping_share + friction;
         (lateral, friction * wall.contact_radius * wall.contact_radius)
     };
-    // Of every node: the slopes of its force laterally and about its axis, and its own compliances.
+    // For every node: the slopes of its force laterally and about its axis, and its own compliances.
     let sites: Vec<[(f64, f64); 2]> = model
         .mesh
         .nodes
@@ -134,7 +134,7 @@ fn sweep_factor(
             let site = ContactNode::from(node);
             // Along elements, nodes have no share of the force.
             let force = if site.stiffness_share > 0.0 { *force } else { 0.0 };
-            // The wall does not move what is held.
+            // The wall does not move held degrees of freedom.
             let (lateral, twist) = if system.held[i][U] { (0.0, 0.0) } else { slopes(&site, force) };
             let (lateral, twist) = (lateral + at_nodes.lateral(i), twist + at_nodes.twist(i));
             [
@@ -214,7 +214,7 @@ fn sweep_factor(
                 x[THETA_Z] - twist * force[THETA_Z],
             );
         }
-        // Twist counts by the way of the surface. Displacements count where something pushes.
+        // Twist counts by the displacement of the surface. Displacements count at nodes with a force.
         let of_node = |(node, x): (usize, &[f64; DOFS])| {
             let [(slope, _), _] = sites[node];
             let radius = model.mesh.nodes[node].contact_radius;
@@ -237,7 +237,7 @@ fn sweep_factor(
     Ok((factor, node))
 }
 
-/// Slopes of the forces at nodes but the wall's, as a step makes them: stiffness and c_v times damping.
+/// Slopes of the forces at nodes but the wall's in a step: stiffness and c_v times damping.
 struct ForceSlopes(Option<BlockTridiagonal>);
 
 impl ForceSlopes {
@@ -281,7 +281,7 @@ struct ClosedSegment {
 }
 
 impl ClosedSegment {
-    /// Of an element with the slopes of a point's force, and the compliances of its nodes by (node of the element, degree of freedom).
+    /// Segment of an element with the slopes of a point's force, and the compliances of its nodes by (node of the element, degree of freedom).
     fn new(
         element: usize,
         segment: &ContactSegment<f64>,
@@ -343,7 +343,7 @@ impl ClosedSegment {
         }
     }
 
-    /// Takes out of displacements what the forces of both points make of them.
+    /// Subtracts from displacements the part that the forces of both points cause.
     fn subtract_own(&self, force: &[[f64; 3]; 2], x: &mut [[f64; 3]; 2]) {
         for ((x, lateral), twist) in x.iter_mut().zip(&self.lateral).zip(&self.twist) {
             for (dof, x) in x.iter_mut().enumerate() {
@@ -362,7 +362,7 @@ fn lateral_and_twist([u, v]: [f64; LATERAL], twist: f64) -> [f64; DOFS] {
 }
 
 /// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and the highest c/m of
-/// `m x'' + c x' + k x = 0` that its damping and its contacts' dampers make.
+/// `m x'' + c x' + k x = 0` by its damping and its contacts' dampers.
 pub(crate) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
     let contact = &model.scenario.contact;
     let stiffness = |site: &ContactNode<f64>| contact.stiffness * site.stiffness_share;
@@ -374,7 +374,7 @@ pub(crate) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, Si
 
 /// The largest step of RK4 \[s\] that is stable for all modes of frequencies up to `frequency` \[rad/s\] and c/m up to `decay` \[1/s\].
 ///
-/// Up to critical damping the eigenvalues of a mode of the damping ratio zeta lie on the ray of the angle acos(-zeta), as far from zero as its
+/// Up to critical damping the eigenvalues of a mode of the damping ratio zeta lie on the ray of the angle acos(-zeta), at a distance from zero of its
 /// frequency, which is c/m over 2 zeta; beyond, they are real and less than c/m.
 fn largest_stable_step(frequency: f64, decay: f64) -> f64 {
     let strongest = 0.5 * decay / frequency;

@@ -7,7 +7,7 @@ use super::work::Work;
 use crate::force::points::PointState;
 use crate::math::linalg::NodalField;
 
-/// Motion at a step's end, with what the methods carry from step to step.
+/// Motion at a step's end, with the values that the methods carry from step to step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State<const D: usize> {
     #[serde(with = "nodal")]

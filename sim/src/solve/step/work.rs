@@ -1,16 +1,16 @@
-//! Powers and works of everything that does work on the motion.
+//! Powers and works of forces and matrices on the motion.
 
 use serde::{Deserialize, Serialize};
 
 use crate::force::effect::DAMPING;
 use crate::force::list::ENTRIES;
 
-/// Powers \[W\], or work \[J\] once multiplied by time, of everything that does work on the string's motion.
+/// Powers \[W\], or work \[J\] once multiplied by time, of all forces and matrices that do work on the string's motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Work {
-    /// Of forces, in the order of [`ENTRIES`].
+    /// Powers of forces, in the order of [`ENTRIES`].
     pub(super) forces: [f64; ENTRIES.len()],
-    /// Of the matrices that multiply velocities, in the sense of their accounts' sides, in the order of [`DAMPING`].
+    /// Powers of the matrices that multiply velocities, in the sense of their accounts' sides, in the order of [`DAMPING`].
     pub(super) damping: [f64; WORKING],
     pub(super) follower: f64,
 }

@@ -8,7 +8,7 @@ use crate::force::drive::Drive;
 use crate::math::dof::DOFS;
 use crate::string::MeshNode;
 
-/// Scenario and string that decide the forces.
+/// Scenario and string that determine the forces.
 pub(crate) struct ForceScene<'a> {
     pub(crate) scenario: &'a Scenario,
     pub(crate) effects: &'a ActiveEffects,
@@ -49,7 +49,7 @@ pub(crate) struct At<'a> {
     pub(crate) memory: &'a [f64],
 }
 
-/// Motion that a stage solve gives to a node per force at the same node.
+/// Compliance of a node in a stage solve to forces at the same node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NodeCompliance {
     /// Displacement (rows) by force (columns) \[m/N, rad/(N m)\]; zero at degrees of freedom that are held or not solved for.
@@ -63,15 +63,15 @@ pub(crate) struct NodeCompliance {
 pub(crate) enum Dependence {
     /// Constant: part of the load at rest and in motion, its potential part of the stored energy.
     None,
-    /// On time alone; none at rest.
+    /// Dependence on time alone; zero at rest.
     Time,
-    /// On motion, time and state: evaluated in every contact iteration.
+    /// Dependence on motion, time and state: evaluated in every contact iteration.
     Motion,
 }
 
 /// A force at a few nodes, with unknowns and memory of its own.
 ///
-/// The law itself does not change in a run: its state is part of the run's, so that a rejected step, a checkpoint and a restart need no code of
+/// The law itself does not change in a run: its state is part of the run's, so that a rejected step, a checkpoint and a restart need no code in
 /// the force.
 pub(crate) trait NodalForce: fmt::Debug + Send + Sync {
     /// Nodes that it acts on, from 0.
@@ -80,14 +80,14 @@ pub(crate) trait NodalForce: fmt::Debug + Send + Sync {
     /// Dependence of its forces.
     fn dependence(&self) -> Dependence;
 
-    /// Entry of the ledger that books its work on the motion; none of a constant force, whose work is a change of potential.
+    /// Entry of the ledger that books its work on the motion; none for a constant force, whose work is a change of potential.
     fn entry(&self) -> Option<&'static str>;
 
     /// Forces \[N, N m\] on its nodes, in their order.
     fn forces(&self, at: &At<'_>, out: &mut [[f64; DOFS]]);
 
-    /// Forces that agree with the motion that they make: on entry `out` holds the forces of the motion in `at`. A force whose slope is steep in a step's
-    /// time needs its own; the others are those of the motion as it is.
+    /// Forces that agree with the motion that they cause: on entry `out` holds the forces of the motion in `at`. A force whose slope is steep over a
+    /// step's time needs its own implementation; other forces are those of the given motion.
     fn implicit_forces(&self, at: &At<'_>, compliance: &[NodeCompliance], out: &mut [[f64; DOFS]]) {
         let _ = compliance;
         self.forces(at, out);
@@ -98,8 +98,8 @@ pub(crate) trait NodalForce: fmt::Debug + Send + Sync {
         let _ = (at, add);
     }
 
-    /// Change of a coefficient of the law, comparable with a friction coefficient, by a `change` of the motion: what the step's error is
-    /// measured by.
+    /// Change of a coefficient of the law, comparable with a friction coefficient, by a `change` of the motion: a measure of the
+    /// step's error.
     fn sensitivity(&self, at: &At<'_>, change: &dyn Fn(usize) -> NodeMotion) -> f64 {
         let _ = (at, change);
         0.0
@@ -131,7 +131,7 @@ pub(crate) trait NodalForce: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Takes an accepted step into the memory, which `at` is without.
+    /// Takes an accepted step into the memory; the memory in `at` is the one before.
     fn commit(&self, at: &At<'_>, memory: &mut Vec<f64>) {
         let _ = (at, memory);
     }

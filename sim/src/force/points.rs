@@ -1,4 +1,4 @@
-//! Forces at a few nodes as a run evaluates them, with their state.
+//! Forces at a few nodes in a run, with their state.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub(crate) struct PointForces<const D: usize> {
     follows_motion: bool,
 }
 
-/// One of them.
+/// One of these forces.
 #[derive(Debug, Clone)]
 struct Point {
     force: Arc<dyn NodalForce>,
@@ -42,11 +42,11 @@ pub(crate) struct PointState {
     memory: Vec<Vec<f64>>,
 }
 
-/// Stage of an implicit method as unknowns see it: z = base + factor z'.
+/// Stage of an implicit method for unknowns: z = base + factor z'.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnknownStage<'a> {
     pub(crate) base: &'a [f64],
-    /// \[s\].
+    /// Factor \[s\].
     pub(crate) factor: f64,
 }
 
@@ -80,7 +80,7 @@ impl<const D: usize> PointForces<D> {
         Self { points, freedoms, sites, follows_motion }
     }
 
-    /// Forces of no evaluation yet.
+    /// Zero forces, before any evaluation.
     pub(crate) fn none(&self) -> Vec<[f64; DOFS]> {
         vec![[0.0; DOFS]; self.sites]
     }

@@ -1,4 +1,4 @@
-//! Mass unbalance: without it rotation drives nothing by itself.
+//! Mass unbalance: without it rotation excites nothing by itself.
 //!
 //! A mass m_u at the distance d from the axis pulls with m_u d Omega^2 and turns with the string.
 

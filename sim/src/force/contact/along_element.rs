@@ -1,18 +1,18 @@
 //! Contact along an element: the law of the wall, integrated over the part of the element that is in the wall.
 //!
 //! The deflection between the nodes is the parabola through its values at both ends and in the middle, and so is the gap g = r - j0. The wall stores
-//! K_c/2 times the integral of g^2 over the part where the gap is positive; its forces are the exact derivatives of that energy, so that they take no work
-//! from any closed path, and they change without steps as parts of the element come into the wall, merge and leave it. (A Gauss rule on that part has
-//! neither property: its forces can feed a string that moves through them, and Newton's method found no equilibrium on elements longer than the wall spreads a
-//! force.) They act at two points of the element, the Gauss points of the weight g, which carry the same force and the same first three
-//! moments as the whole.
+//! K_c/2 times the integral of g^2 over the part with a positive gap. Its forces are the exact derivatives of that energy, so that they do no work
+//! along any closed path, and they change without steps as parts of the element come into the wall, merge and leave it. (A Gauss rule on that part
+//! has neither property: its forces can excite a string that moves through them, and Newton's method found no equilibrium on elements longer than the
+//! length over which the wall spreads a force.) The forces act at two points of the element, the Gauss points of the weight g, which carry the same
+//! force and the same first three moments as the whole.
 
 use super::law::ContactParameters;
 use super::motion::{LateralMotion, Surface};
 use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
-/// An element of the string as it meets the wall.
+/// Contact data of an element of the string.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSegment<L> {
     /// Length l \[m\].
@@ -51,10 +51,10 @@ pub struct SegmentForce<L> {
     pub middle: L,
 }
 
-/// Displacements of an element under forces on it: what makes the wall's force implicit along the element.
+/// Compliance of an element to loads on it, which makes the wall's force implicit along the element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentCompliance<L> {
-    /// Upper triangle, row by row, of the matrix that gives the displacements in a plane for loads in it, the mean of both planes
+    /// Upper triangle, row by row, of the matrix from loads in a plane to displacements in it, the mean of both planes
     /// \[m/N, 1/N, 1/(N m)\].
     pub lateral: [L; 10],
     /// Twist by torque: at the upper end, between both ends, at the lower end \[rad/(N m)\].
@@ -85,7 +85,7 @@ struct Contact<L> {
     second: Stretch<L>,
 }
 
-/// The penetration along an element, as two points have it.
+/// The penetration along an element, represented by two points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pressed<L> {
     /// Gauss points of the penetration as a weight.
@@ -130,7 +130,9 @@ struct Point<L: Lane> {
     normal: L,
 }
 
-/// Consistent nodal loads of the wall on an element in motion, at rotation speed Omega \[rad/s\]: the law (10) to (14). False if no lane touches; then `force` is left as it is.
+/// Consistent nodal loads of the wall on an element in motion, at rotation speed Omega \[rad/s\]: the law (10) to (14). False if no lane touches;
+/// then
+/// `force` is unchanged.
 #[inline(always)]
 pub fn dynamic_segment<L: Lane>(
     law: &ContactParameters<L>,
@@ -154,10 +156,10 @@ pub fn dynamic_segment<L: Lane>(
     true
 }
 
-/// The loads of the same law that agree with the motion which they lead to, as far as the element's own loads move it: normal forces of both
-/// points by one step of Newton's method, frictions of both by a solution of the whole friction curve. `force` holds the loads that
-/// the motion was found with, or none, and takes the new ones; `speed` is the ratio of a change of velocity to that of displacement \[1/s\].
-/// False if no lane touches; then `force` is left as it is.
+/// Loads of the same law that agree with the motion that they cause, as far as the element's own loads move it: normal forces of both
+/// points by one step of Newton's method, frictions of both by a solution of the whole friction curve. On entry `force` holds the loads that
+/// the motion was found with, or none, and on return the new ones; `speed` is the ratio of a change of velocity to that of displacement \[1/s\].
+/// False if no lane touches; then `force` is unchanged.
 #[inline(always)]
 pub fn implicit_segment<L: Lane>(
     law: &ContactParameters<L>,
@@ -286,7 +288,7 @@ impl<L: Lane> ContactSegment<L> {
         }
         let gap = self.gap(planes);
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        // A collar on its low side touches with the whole of most elements: no roots are taken there.
+        // A collar on its low side touches with the whole of most elements: there no roots are needed.
         if !(may_touch & !whole).any() {
             let first = Stretch { from: zero, to: L::select(whole, one, zero) };
             return Some(Contact { gap, first, second: Stretch { from: one, to: one } });
@@ -298,7 +300,7 @@ impl<L: Lane> ContactSegment<L> {
         first.is_anywhere().then_some(Contact { gap, first, second })
     }
 
-    /// False only if no lane touches: a look without roots.
+    /// False only if no lane touches: a check without roots.
     #[inline(always)]
     pub fn may_touch(&self, planes: &[Plane<L>; 2]) -> bool {
         self.reach(planes).may_touch.any()
@@ -306,8 +308,8 @@ impl<L: Lane> ContactSegment<L> {
 
     /// Bounds on the gap without roots.
     ///
-    /// (r^2 - j0^2) / (2 j0) has the sign of the gap and is no less, and a parabola reaches beyond its values at both ends and in the middle by a sixteenth
-    /// of its second difference at most; twice that leaves room for the difference of the two parabolas.
+    /// (r^2 - j0^2) / (2 j0) has the sign of the gap and is no less, and a parabola exceeds its values at both ends and in the middle by at most a
+    /// sixteenth of its second difference; twice that covers the difference of the two parabolas.
     #[inline(always)]
     fn reach(&self, planes: &[Plane<L>; 2]) -> Reach<L> {
         let clearance = self.wall.clearance;
@@ -322,7 +324,7 @@ impl<L: Lane> ContactSegment<L> {
         }
     }
 
-    /// (u, v) at the upper end, in the middle and at the lower end \[m\]. In the middle the shear parameter does not matter.
+    /// (u, v) at the upper end, in the middle and at the lower end \[m\]. In the middle the shear parameter has no influence.
     #[inline(always)]
     fn at_ends_and_middle(&self, [in_u, in_v]: &[Plane<L>; 2]) -> [[L; 2]; 3] {
         let eighth = L::splat(0.125) * self.length;
@@ -415,11 +417,11 @@ impl<L: Lane> Gap<L> {
         self.bend.mul_add(at, self.rise).mul_add(at, self.upper)
     }
 
-    /// Integrals of the gap over a stretch, with the powers 0 to 3 of the distance from its upper end as weights, and of its square.
+    /// Integrals of the gap over a part of the element, with the powers 0 to 3 of the distance from its upper end as weights, and of its square.
     #[inline(always)]
     fn moments(&self, stretch: &Stretch<L>) -> ([L; 4], L) {
         let length = stretch.length();
-        // p + q t + r t^2, t from 0 to 1 along the stretch.
+        // p + q t + r t^2, t from 0 to 1 along the part.
         let p = self.at(stretch.from);
         let q = (self.bend + self.bend).mul_add(stretch.from, self.rise) * length;
         let r = self.bend * length * length;
@@ -435,7 +437,8 @@ impl<L: Lane> Gap<L> {
         (moments, length * r.mul_add(m_2, q.mul_add(m_1, p * m_0)))
     }
 
-    /// The parts of the element on which the gap is positive: one, or the two outer ones if it closes at both ends only; of one alone the second is empty.
+    /// The parts of the element with a positive gap: one, or the two outer ones if it closes at both ends only; the second part of a single one is
+    /// empty.
     #[inline(always)]
     fn stretches(&self) -> (Stretch<L>, Stretch<L>) {
         let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
@@ -443,7 +446,7 @@ impl<L: Lane> Gap<L> {
         let discriminant = b * b - L::splat(4.0) * c * upper;
         let crosses = discriminant.greater_than(zero);
         let root = discriminant.max(zero).sqrt();
-        // The roots without the difference of what is nearly equal: downwards the gap has the slope -root, upwards +root.
+        // The roots without the difference of nearly equal numbers: downwards the gap has the slope -root, upwards +root.
         let sum = b.abs() + root;
         let quotient = |a: L, b: L| {
             let is_zero = !(b.less_than(zero) | b.greater_than(zero));
@@ -454,7 +457,7 @@ impl<L: Lane> Gap<L> {
         let (down, up) = (L::select(falls, near, -far), L::select(falls, far, -near));
         let clamped = |x: L| x.max(zero).min(one);
         let (from_top, to_bottom) = (upper.greater_than(zero), lower.greater_than(zero));
-        // Its extreme lies between the ends: a minimum, or a maximum.
+        // The gap's extreme lies between the ends: a minimum, or a maximum.
         let has_minimum = falls & (-b).less_than(two * c);
         let has_maximum = b.greater_than(zero) & b.less_than(-(two * c));
         // Both ends in the wall: whole, unless the gap opens between them. One end: up to the crossing. None: between the crossings, if it closes there.
@@ -472,7 +475,7 @@ impl<L: Lane> Gap<L> {
 }
 
 impl<L: Lane> Stretch<L> {
-    /// Length over that of the element.
+    /// Length relative to that of the element.
     #[inline(always)]
     fn length(&self) -> L {
         (self.to - self.from).max(L::splat(0.0))
@@ -532,7 +535,7 @@ impl ContactSegment<f64> {
         })
     }
 
-    /// The Gauss points of the whole element, with the wall as each meets it.
+    /// The Gauss points of the whole element, with the contact data of each.
     pub(super) fn whole(&self) -> [(Place<f64>, ContactNode<f64>); 2] {
         let half = ContactNode {
             stiffness_share: 0.5 * self.wall.stiffness_share,

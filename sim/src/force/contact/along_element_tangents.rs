@@ -14,8 +14,8 @@ use crate::string::beam::{ElementMatrix, ElementVector};
 pub struct StaticSegmentForce {
     /// Consistent nodal loads \[N, N m\].
     pub force: ElementVector,
-    /// Their derivatives by the nodal values; without friction the second derivatives of an energy, to the square of the angle by which the normal turns along the
-    /// element.
+    /// Derivatives of the loads by the nodal values; without friction they are the second derivatives of an energy, up to the square of the angle by
+    /// which the normal turns along the element.
     pub tangent: ElementMatrix,
     /// Normal forces \[N\], shared between the upper and the lower node.
     pub ends: [f64; 2],
@@ -37,16 +37,16 @@ pub struct SmoothSegmentForce {
 /// Derivatives of the wall's loads on an element about a state without vibration, with the sign of a left-hand side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlidingSegmentTangent {
-    /// By the nodal values.
+    /// Derivatives by the nodal values.
     pub stiffness: ElementMatrix,
-    /// By their rates.
+    /// Derivatives by the rates of the nodal values.
     pub damping: ElementMatrix,
-    /// Change of the friction torque by the twist's rate, shared between the upper and the lower node \[N m s\]; negative where friction feeds
+    /// Change of the friction torque by the twist's rate, shared between the upper and the lower node \[N m s\]; negative if friction excites
     /// torsion.
     pub rubbing: [f64; 2],
 }
 
-/// Nodal values of an element in the planes of u and of v, as [`Plane`] has them.
+/// Nodal values of an element in the planes of u and of v, in the form of [`Plane`].
 pub fn planes(values: &ElementVector) -> [Plane<f64>; 2] {
     [
         [values[U], values[THETA_Y], values[DOFS + U], values[DOFS + THETA_Y]],
@@ -73,9 +73,9 @@ pub fn static_segment(
     Some(StaticSegmentForce { force, tangent: -elastic.stiffness, ends })
 }
 
-/// The elastic force of the wall along an element, with a friction in proportion to it.
+/// The elastic force of the wall along an element, with friction in proportion to it.
 struct Elastic {
-    /// The points that it acts at, with its direction there: along u and v, and the arm of its torque \[m\].
+    /// Points of the force, with its direction there: along u and v, and the arm of its torque \[m\].
     points: [(PressedPoint, [f64; 3]); 2],
     /// Its derivatives by the nodal values, with the sign of a left-hand side.
     stiffness: ElementMatrix,
@@ -89,14 +89,14 @@ struct PressedPoint {
     rows: Rows,
     /// Unit vector (u, v) from the axis.
     outwards: [f64; 2],
-    /// Part of the whole that it carries.
+    /// Part of the whole force.
     part: f64,
     /// Normal force \[N\].
     normal: f64,
 }
 
 impl Elastic {
-    /// At nodal values, with a coefficient of friction; `None` without contact.
+    /// The force at nodal values, with a coefficient of friction; `None` without contact.
     fn of(
         law: &ContactParameters<f64>,
         segment: &ContactSegment<f64>,
@@ -159,7 +159,7 @@ fn outwards(rows: &Rows, values: &ElementVector) -> (f64, [f64; 2]) {
 }
 
 /// Loads of [`smooth_static_contact`] at the Gauss points of the whole element. As the width vanishes they become those of contact at these fixed
-/// points, next to those of [`static_segment`].
+/// points, which are close to those of [`static_segment`].
 pub fn smooth_static_segment(
     law: &ContactParameters<f64>,
     segment: &ContactSegment<f64>,
@@ -200,7 +200,7 @@ pub fn sliding_segment(
     let mut damping = ElementMatrix::zeros();
     let mut rubbing = [0.0; 2];
     for (point, direction) in &elastic.points {
-        // As sliding_tangent has it of a node.
+        // The same as in sliding_tangent for a node.
         let [n_u, n_v] = point.outwards;
         let (normal, tangent) = ([n_u, n_v, 0.0], [-n_v, n_u, radius]);
         let rubbed = [-law.tangential_share * n_v, law.tangential_share * n_u, law.torque_share * radius];
@@ -216,7 +216,7 @@ pub fn sliding_segment(
     Some(SlidingSegmentTangent { stiffness: elastic.stiffness, damping, rubbing })
 }
 
-/// The Gauss points of a whole element: rows that give u, v and the twist there from the nodal values, and the wall as each meets it.
+/// The Gauss points of a whole element: rows that map the nodal values to u, v and the twist there, and the contact data of each.
 pub fn whole_segment(segment: &ContactSegment<f64>) -> [([ElementVector; 3], ContactNode<f64>); 2] {
     segment.whole().map(|(place, wall)| {
         let Rows(rows) = place.rows();
@@ -224,7 +224,7 @@ pub fn whole_segment(segment: &ContactSegment<f64>) -> [([ElementVector; 3], Con
     })
 }
 
-/// Rows that give u, v and the twist at a place of an element from its nodal values.
+/// Rows that map the nodal values of an element to u, v and the twist at a place.
 struct Rows(SMatrix<f64, 3, { 2 * DOFS }>);
 
 impl Place<f64> {
@@ -263,7 +263,7 @@ impl Rows {
     }
 }
 
-/// A tangent by u and v as one by u, v and the twist, on which contact at rest does not depend.
+/// Tangent by u, v and the twist, from one by u and v: contact at rest does not depend on the twist.
 fn with_column_of_twist(tangent: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {
     tangent.map(|[by_u, by_v]| [by_u, by_v, 0.0])
 }

@@ -7,7 +7,7 @@ use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction};
 use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
-/// A [`ContactLaw`] with its switches, ready to evaluate.
+/// A [`ContactLaw`] with its switches, prepared for evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactParameters<L> {
     stiffness: Saturating<L>,
@@ -22,15 +22,15 @@ pub struct ContactParameters<L> {
     xi: L,
     /// Decay a of (14) \[s/m\].
     decay: L,
-    /// 1/a \[m/s\], the sliding speed that the curve of (14) is a function of; infinite without friction.
+    /// 1/a \[m/s\], the scale of the sliding speed in (14); infinite without friction.
     reach: L,
-    /// True if there is any friction: otherwise its coefficient is not evaluated.
+    /// True if there is friction: without it, its coefficient is not evaluated.
     pub(super) has_friction: bool,
     /// Friction of a node at rest.
     at_rest: StartFriction,
-    /// 1 where friction pushes along the wall, 0 where that is switched off.
+    /// 1 if friction pushes along the wall, 0 if that is switched off.
     pub(super) tangential_share: L,
-    /// 1 where friction turns the string, 0 where that is switched off.
+    /// 1 if friction turns the string, 0 if that is switched off.
     pub(super) torque_share: L,
 }
 
@@ -46,15 +46,15 @@ struct Saturating<L> {
 impl<L: Lane> ContactParameters<L> {
     /// The same law in every lane.
     ///
-    /// `friction` off drops the force along the wall and `friction_torque` off the torque about the axis, each
-    /// on its own. Whether there is contact at all is for the caller to ask.
+    /// `friction` off removes the force along the wall and `friction_torque` off the torque about the axis, each
+    /// on its own. The caller checks that there is contact at all.
     pub fn new(law: &ContactLaw, effects: &ActiveEffects) -> Self {
         let (static_friction, dynamic_friction) = (law.static_friction, law.dynamic_friction);
         let frictionless = static_friction == 0.0;
         let ratio = if frictionless { 1.0 } else { dynamic_friction / static_friction };
         let xi = (1.0 - ratio).sqrt();
         let half_slope = if frictionless { 0.0 } else { 0.5 / law.friction_reference_speed };
-        // a = (1 - xi) / (2 v_ref mu_d); 1 - xi = (mu_d/mu_s) / (1 + xi) spares the quotient 0/0 of mu_d = 0.
+        // a = (1 - xi) / (2 v_ref mu_d); 1 - xi = (mu_d/mu_s) / (1 + xi) avoids the quotient 0/0 for mu_d = 0.
         let decay = if frictionless { 0.0 } else { half_slope / (static_friction * (1.0 + xi)) };
         let share = |is_on: bool| L::splat(if is_on { 1.0 } else { 0.0 });
         ContactParameters {
@@ -76,25 +76,25 @@ impl<L: Lane> ContactParameters<L> {
         }
     }
 
-    /// Stiffness K_c(P) \[N/m\], (11), of a node with the whole of the law's.
+    /// Stiffness K_c(P) \[N/m\], (11), of a node with the whole stiffness of the law.
     #[inline(always)]
     pub fn stiffness(&self, penetration: L) -> L {
         self.stiffness.at(penetration)
     }
 
-    /// Damping C_c(P) \[N s/m\], (11), of a node with the whole of the law's.
+    /// Damping C_c(P) \[N s/m\], (11), of a node with the whole damping of the law.
     #[inline(always)]
     pub fn damping(&self, penetration: L) -> L {
         self.damping.at(penetration)
     }
 
-    /// Stiffness K_c \[N/m\] far inside the wall, of a node with the whole of the law's.
+    /// Stiffness K_c \[N/m\] far inside the wall, of a node with the whole stiffness of the law.
     #[inline(always)]
     pub(super) fn largest_stiffness(&self) -> L {
         self.stiffness.half_limit + self.stiffness.half_limit
     }
 
-    /// A normal force \[N\] that does not pull where the law has no adhesion.
+    /// A normal force \[N\], which does not pull if the law has no adhesion.
     #[inline(always)]
     pub(super) fn limited(&self, normal_force: L) -> L {
         normal_force.max(self.least_normal_force)
@@ -117,7 +117,7 @@ impl<L: Lane> ContactParameters<L> {
         sliding_speed * self.half_slope * shape
     }
 
-    /// d(mu)/d(v_g) of (14) \[s/m\]: 1 / v_ref at rest, negative where the curve falls.
+    /// d(mu)/d(v_g) of (14) \[s/m\]: 1 / v_ref at rest, negative on the velocity-weakening branch.
     #[inline(always)]
     pub fn friction_slope(&self, sliding_speed: L) -> L {
         let one = L::splat(1.0);
@@ -128,13 +128,14 @@ impl<L: Lane> ContactParameters<L> {
         self.half_slope * (shape - run * fade * fade * (twice + twice + (one - self.xi)))
     }
 
-    /// The sliding speed s \[m/s\] at which `s + response mu(s) = unopposed`: what friction on a node leaves of its sliding when the
-    /// sliding speed gives way by `response` for a friction coefficient of one, 0 or more \[m/s\]. Of several, that nearest to rest.
+    /// Solves `s + response mu(s) = unopposed` for the sliding speed s \[m/s\]. `response` \[m/s\], 0 or more, is the reduction of the sliding speed
+    /// by a friction coefficient of one, and `unopposed` is the sliding speed without friction. Of several solutions the one nearest to rest is
+    /// returned.
     ///
     /// In `q = a s`, with `w = 1 + q`, `rho = response / (2 v_ref)` and `tau = a unopposed`, the equation is
     /// `f(q) = q + rho q (2 + (1 - xi) q) / w^2 - tau = 0`, and f w^2 is a cubic. Halley's method finds its root with one division an
     /// iteration. It starts from the root of the quadratic with `2 q / (1 + (3 + xi)/2 q)` in place of the friction curve, which has the
-    /// curve's slope and curvature at rest. A lane is kept as it is once it has converged, so that its bits do not depend on its
+    /// curve's slope and curvature at rest. A lane stays unchanged once it has converged, so that its bits do not depend on its
     /// neighbours.
     #[inline(always)]
     pub fn opposed_sliding_speed(&self, unopposed: L, response: L) -> L {
@@ -170,11 +171,11 @@ impl<L: Lane> ContactParameters<L> {
         (q * self.reach).min(limit).copysign(unopposed)
     }
 
-    /// The sliding speeds s_i \[m/s\] at which `s_i + sum_j response_ij mu(s_j) = unopposed_i`: the same of two points that move with each other's
-    /// friction, `response` \[m/s\] being the change of the sliding speeds (rows) by friction coefficients of one (columns).
+    /// Solves `s_i + sum_j response_ij mu(s_j) = unopposed_i` for the sliding speeds s_i \[m/s\] of two points that move with each other's
+    /// friction. `response` \[m/s\] is the change of the sliding speeds (rows) by friction coefficients of one (columns).
     ///
-    /// Newton's method from the speeds that points with one friction coefficient in common would have, with bounds that hold where the curve falls: each step's
-    /// matrix is kept regular, and no speed exceeds the sum of the unopposed ones.
+    /// Newton's method starts from the speeds that the points would have with one common friction coefficient. Bounds hold on the velocity-weakening
+    /// branch: each step's matrix is kept regular, and no speed exceeds the sum of the unopposed ones.
     #[inline(always)]
     pub(super) fn opposed_sliding_speeds(&self, unopposed: [L; 2], response: [[L; 2]; 2]) -> [L; 2] {
         let (one, smallest) = (L::splat(1.0), L::splat(SMALLEST_RISE));
@@ -219,7 +220,7 @@ impl<L: Lane> ContactParameters<L> {
                 break;
             }
         }
-        // Next to a fold, where friction falls faster than the speeds give way, steps may lead away.
+        // Next to a fold, if friction falls faster than the speeds, steps may lead away.
         let excess =
             left(&speeds, [self.friction_coefficient(speeds[0]), self.friction_coefficient(speeds[1])]);
         let is_closer = !excess[0].abs().max(excess[1].abs()).greater_than(at_start);
@@ -239,7 +240,7 @@ impl<L: Lane> ContactParameters<L> {
         (friction, slope)
     }
 
-    /// Energy \[J\] stored by the contact stiffness of such a node, the integral of K_c(p) p from 0 to P; zero out of contact.
+    /// Energy \[J\] stored by the contact stiffness of such a node, the integral of K_c(p) p from 0 to P; zero without contact.
     pub fn potential_energy(&self, penetration: L) -> L {
         let p = penetration.max(L::splat(0.0));
         self.stiffness.first_moment(p)
@@ -272,7 +273,7 @@ impl ContactParameters<f64> {
     }
 
     /// Friction coefficient of a node at rest in a frame that turns with `rotation_speed` Omega \[rad/s\], in its sense: mu_s at
-    /// break-away (36), or mu at the sliding speed Omega R_e (14). Without rotation there is no sense to take, and no friction.
+    /// break-away (36), or mu at the sliding speed Omega R_e (14). Without rotation friction has no sense, and is zero.
     pub fn friction_at_rest(&self, node: &ContactNode<f64>, rotation_speed: f64) -> f64 {
         match self.at_rest {
             StartFriction::BreakAway if rotation_speed == 0.0 => 0.0,
@@ -333,7 +334,7 @@ impl<L: Lane> Saturating<L> {
     /// The integral of the coefficient times p from 0 to P >= 0.
     ///
     /// With y = sharpness P, the integral of p atan(sharpness p) is ((1 + y^2) atan y - y) / (2 sharpness^2);
-    /// where y is small that bracket is 2 y^3 (1/3 - y^2/15 + y^4/35 - ...), summed here as a series.
+    /// for small y that bracket is 2 y^3 (1/3 - y^2/15 + y^4/35 - ...), summed here as a series.
     fn first_moment(&self, penetration: L) -> L {
         let y = self.sharpness * penetration;
         let y_squared = y * y;
@@ -353,24 +354,24 @@ impl<L: Lane> Saturating<L> {
 /// Sliding speed of fast sliding in multiples of 1/a of (14).
 const FAST_SLIDING: f64 = 16.0;
 
-/// Iterations for an opposed sliding speed at most. Over responses and speeds where the solution is the only one (f' above 0.05), most
-/// need one and a few in a thousand more than three, and they leave less than 1e-8 of mu_s; next to a fold, from where friction falls faster
-/// than the speed gives way, no number of them is enough for all.
+/// Largest number of iterations for an opposed sliding speed. Over responses and speeds with a single solution (f' above 0.05), most
+/// need one and a few in a thousand more than three, and they leave less than 1e-8 of mu_s; next to a fold, beyond which friction falls faster
+/// than the speed, no number of them is enough for all.
 const OPPOSED_ITERATIONS: usize = 6;
 
-/// Newton iterations for two such speeds at most: they leave less than 1e-5 m/s of the equations of the tested laws.
+/// Largest number of Newton iterations for two such speeds: they leave less than 1e-5 m/s of the equations of the tested laws.
 const OPPOSED_PAIR_ITERATIONS: usize = 6;
 
-/// The change of q, over w, after which a lane has converged: the error after an iteration goes with the cube of that before it.
+/// Change of q, over w, after which a lane has converged: an iteration cubes the error.
 const LAST_STEP: f64 = 1e-3;
 
-/// The change of both times a after which a lane has converged: Newton's method squares the error.
+/// Change of both times a after which a lane has converged: Newton's method squares the error.
 const LAST_PAIR_STEP: f64 = 1e-4;
 
-/// Least slope of the equation of the sliding speed, if friction falls faster than the speed gives way: it bounds an iteration to ten times the
+/// Least slope of the equation of the sliding speed, if friction falls faster than the speed: it bounds an iteration to ten times the
 /// step without friction.
 const SMALLEST_RISE: f64 = 0.1;
 
-/// Below this y the series is summed; what 9 terms leave out is below y^18.
+/// Value of y below which the series is summed; nine terms leave a remainder below y^18.
 const SERIES_LIMIT: f64 = 0.1;
 const SERIES_TERMS: u32 = 9;

@@ -1,12 +1,12 @@
 //! Borehole contact and friction, equations (10) to (14) and (36) (docs/model/contact.md).
 //!
 //! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
-//! touches the wall where its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
+//! touches the wall if its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
 //! force in motion is [`dynamic_contact`], inside an implicit solve [`implicit_contact`], at rest [`static_contact`]; its
 //! linearisation about steady sliding is [`sliding_tangent`].
 //!
 //! If stiffness belongs to a length, the same law acts along the elements: [`dynamic_segment`], [`implicit_segment`],
-//! [`static_segment`] and [`sliding_segment`] integrate it over the stretch of a [`ContactSegment`] that is in the wall. Gauges remain points.
+//! [`static_segment`] and [`sliding_segment`] integrate it over the part of a [`ContactSegment`] that is in the wall. Gauges remain points.
 
 mod along_element;
 mod along_element_tangents;

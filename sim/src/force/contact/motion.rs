@@ -4,7 +4,7 @@ use super::law::ContactParameters;
 use super::node::ContactNode;
 use crate::math::linalg::{Lane, Mask};
 
-/// Displacements and rates of a node that contact asks for.
+/// Displacements and rates of a node that contact depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LateralMotion<L> {
     /// u \[m\].
@@ -70,15 +70,15 @@ pub fn dynamic_contact<L: Lane>(
     contact_force(law, node, motion, rotation_speed, |normal, _| normal, |sliding_speed, _| sliding_speed)
 }
 
-/// The way along the wall by which a node gives way to its own normal force, over its distance from the axis, from which on the direction of
-/// that force is implicit too. Taken from the sweep before, a direction that is wrong by an angle comes back wrong by that angle times this
-/// ratio; from one on, sweeps diverge.
+/// Displacement along the wall of a node under its own normal force, over its distance from the axis, from which on the direction of
+/// that force is implicit too. If the direction is taken from the contact iteration before, an error of its angle is multiplied by this ratio;
+/// from one on, contact iterations diverge.
 const TURNS_WITH_ITS_FORCE: f64 = 0.5;
 
-/// The force of the same law that agrees with the motion which it leads to, as far as the node's own force moves it: in the
+/// The force of the same law that agrees with the motion that it causes, as far as the node's own force moves it: in the
 /// normal direction by one step of Newton's method, along the surface by a solution of the whole friction curve. A node whose clearance is so
-/// small that its own force turns it about the axis is first put where that force leaves it. Where the motion
-/// agrees with the force that it was found with, it is that of [`dynamic_contact`].
+/// small that its own force turns it about the axis is first moved to its place of rest in that force. If the motion
+/// agrees with the force that it was found with, the force is that of [`dynamic_contact`].
 #[inline(always)]
 pub fn implicit_contact<L: Lane>(
     law: &ContactParameters<L>,
@@ -87,7 +87,7 @@ pub fn implicit_contact<L: Lane>(
     rotation_speed: L,
     yielding: &Yielding<L>,
 ) -> ContactForce<L> {
-    // Of g |F| and the distance j0 + |F| / K, both times K.
+    // The terms g |F| and the distance j0 + |F| / K, both times K.
     let (stiffness, normal) = (law.largest_stiffness() * node.stiffness_share, yielding.normal.abs());
     let distance = stiffness.mul_add(node.clearance, normal);
     let turns =
@@ -102,7 +102,7 @@ pub fn implicit_contact<L: Lane>(
 /// Places at which nodes that turn with their own force come to rest in it, with their normal force; other nodes stay unchanged.
 ///
 /// Without its force F n + F_t t, F along the normal n = x/r and friction F_t along the tangent t, such a node would be at
-/// `y = x + g (F n + F_t t)`. It comes to r along the new normal where `y = (r + g F(r)) n + g F_t t`, which gives both: n by the
+/// `y = x + g (F n + F_t t)`. It comes to r along the new normal with `y = (r + g F(r)) n + g F_t t`, which yields both: n by the
 /// direction of y, r by its length, here with the wall's whole stiffness.
 #[inline(always)]
 fn settle<L: Lane>(
@@ -119,7 +119,7 @@ fn settle<L: Lane>(
     let squared = free_u.mul_add(free_u, free_v * free_v);
     let somewhere = turns & squared.greater_than(zero);
     let distance = L::select(somewhere, squared, one).sqrt();
-    // Friction cannot turn the normal beyond the direction that the node is pushed in.
+    // Friction cannot turn the normal beyond the direction of the force on the node.
     let across = lateral * friction * law.tangential_share / distance;
     let across = across.abs().min(L::splat(LARGEST_TURN)).copysign(across);
     let along = (one - across * across).sqrt();
@@ -141,7 +141,7 @@ fn settle<L: Lane>(
 }
 
 /// Sine of the largest angle by which friction is taken to turn the normal of a node that [settles](settle): short of a right angle, beyond
-/// which nothing would press the node on the wall. The exact value is without a derivation; sweeps correct what it cuts off.
+/// which nothing would press the node on the wall. The exact value is without a derivation; contact iterations correct its effect.
 const LARGEST_TURN: f64 = 0.9;
 
 #[inline(always)]
@@ -223,7 +223,7 @@ fn is_outside<L: Lane>(node: &ContactNode<L>, motion: &LateralMotion<L>) -> L::M
 /// Motion of the string's surface along and into the wall.
 #[derive(Debug, Clone, Copy)]
 pub struct Surface<L: Lane> {
-    /// Lanes in the wall. The other values mean nothing in the others.
+    /// Lanes in the wall; the other values are valid in these only.
     pub touches: L::Mask,
     /// Unit vector (u, v) from the axis.
     pub normal: [L; 2],

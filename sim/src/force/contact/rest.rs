@@ -3,7 +3,7 @@
 use super::law::ContactParameters;
 use super::node::ContactNode;
 
-/// Action of the wall on a node at rest, and how that changes; all zero if it does not touch.
+/// Action of the wall on a node at rest, with its derivatives; all zero if the node does not touch.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StaticContactForce {
     /// Force along u \[N\].
@@ -20,7 +20,7 @@ pub struct StaticContactForce {
     pub tangent: [[f64; 2]; 3],
 }
 
-/// The quasi-static force (36): F_n = K_c P with [friction](ContactParameters::friction_at_rest) as if the string slid in the sense of
+/// The quasi-static force (36): F_n = K_c P with [friction](ContactParameters::friction_at_rest) of a string that slides in the sense of
 /// its rotation Omega \[rad/s\].
 pub fn static_contact(
     law: &ContactParameters<f64>,
@@ -79,10 +79,10 @@ pub struct SmoothContactForce {
     pub by_friction: [f64; 3],
 }
 
-/// [`static_contact`] with a share of its friction on a wall that is felt over a `width` \[m\] about where it stands, smooth everywhere, and
-/// the same at width 0 and share 1.
+/// [`static_contact`] with a share of its friction on a wall that acts over a `width` \[m\] about its position: smooth everywhere, and
+/// equal to it at width 0 and share 1.
 ///
-/// Radius and penetration are R = sqrt(r^2 + width^2) and P = (g + sqrt(g^2 + width^2)) / 2 with the gap g = R - sqrt(j0^2 + width^2): far short of
+/// Radius and penetration are R = sqrt(r^2 + width^2) and P = (g + sqrt(g^2 + width^2)) / 2 with the gap g = R - sqrt(j0^2 + width^2): far from
 /// the wall the force falls like that of a logarithmic barrier, K_c width^2 / (4 |g|).
 pub fn smooth_static_contact(
     law: &ContactParameters<f64>,
@@ -99,7 +99,7 @@ pub fn smooth_static_contact(
     if radius == 0.0 || root == 0.0 {
         return SmoothContactForce::default();
     }
-    // (gap + root) / 2 without the difference of what is nearly equal.
+    // (gap + root) / 2 without the difference of nearly equal numbers.
     let penetration = if gap > 0.0 { 0.5 * (gap + root) } else { 0.5 * width * width / (root - gap) };
     let whole_friction = law.friction_at_rest(node, rotation_speed);
     let friction = friction_share * whole_friction;

@@ -3,19 +3,19 @@
 use super::law::ContactParameters;
 use super::node::ContactNode;
 
-/// Derivatives of the contact's force about a state without vibration, with the sign of a left-hand side: what the wall adds
+/// Derivatives of the contact's force about a state without vibration, with the sign of a left-hand side: the wall's contribution
 /// to stiffness and damping. Rows are the forces along u and v and the torque about e3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlidingTangent {
-    /// By u, v and the twist (whose column is zero) \[N/m, N\].
+    /// Derivatives by u, v and the twist (whose column is zero) \[N/m, N\].
     pub stiffness: [[f64; 3]; 3],
-    /// By the rates of u, v and the twist \[N s/m, N s, N m s\].
+    /// Derivatives by the rates of u, v and the twist \[N s/m, N s, N m s\].
     pub damping: [[f64; 3]; 3],
 }
 
 /// The tangent of [`dynamic_contact`](super::dynamic_contact) at (u, v) without any rates, at rotation speed Omega \[rad/s\]: normal
 /// stiffness and damping, friction's direction that turns with the node, and the slope of the friction curve at the
-/// sliding speed. `None` where the node does not touch.
+/// sliding speed. `None` if the node does not touch.
 pub fn sliding_tangent(
     law: &ContactParameters<f64>,
     node: &ContactNode<f64>,

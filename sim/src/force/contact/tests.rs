@@ -91,14 +91,14 @@ fn a_node_has_its_own_shares_of_stiffness_and_damping() {
     assert_close(force.normal, elastic + damped, 1e-11);
     let at_rest = static_contact(&parameters(&FRICTIONLESS), &node, 0.0402, 0.0, 12.0);
     assert_close(at_rest.normal, elastic, 1e-11);
-    // Where a node has no damping a length may have some: shares are then of 1 N s/m.
+    // A length may have damping if a node has none: shares are then of 1 N s/m.
     let undamped = ContactLaw { law: WallLaw::PerLength, damping: 0.0, ..FRICTIONLESS };
     let node = ContactNode { stiffness_share: 0.3, damping_share: 2e4, ..NODE };
     let force = dynamic_contact(&parameters(&undamped), &node, &motion, 12.0);
     assert_close(force.normal, elastic + damped, 1e-11);
 }
 
-/// Friction uses |F_n|, as (12) has it, so a pulling wall still brakes.
+/// Friction uses |F_n|, as in (12), so a pulling wall still brakes.
 #[test]
 fn friction_of_a_pulling_wall_still_brakes() {
     let leaving = LateralMotion { u: 0.0401, v: 0.0, u_rate: -1.0, v_rate: 0.0, theta_z_rate: 0.0 };
@@ -167,7 +167,7 @@ fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
         assert_close(mu(peak), mu_s, 1e-14);
         assert!((1..1000).all(|i| mu(peak * f64::from(i) / 100.0) <= mu_s * (1.0 + 1e-14)));
         assert!(mu(0.9 * peak) < mu_s && mu(1.1 * peak) < mu_s);
-        // What is left of the peak falls as 1/v, here by a factor of up to 32.
+        // The remainder of the peak falls as 1/v, here by a factor of up to 32.
         assert_close(mu(1e13 * v_ref), mu_d, 1e-11);
         // Second-order one-sided: the law is odd, with a kink in its second derivative at rest.
         let step = 1e-6 * v_ref;
@@ -530,7 +530,7 @@ fn a_lane_has_the_bits_of_a_node_alone() {
     }
 }
 
-/// Over laws, responses and speeds where the solution is the only one, bisection finds the same friction.
+/// Bisection finds the same friction, over laws, responses and speeds with a single solution.
 #[test]
 fn a_sliding_speed_that_gives_way_solves_its_equation() {
     for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3), (0.3, 0.29), (2.0, 1.0)] {
@@ -566,7 +566,7 @@ fn a_sliding_speed_that_gives_way_solves_its_equation() {
     }
 }
 
-/// Friction that falls faster than the speed gives way has several solutions: the one nearest to rest is taken.
+/// Friction that falls faster than the speed has several solutions: the one nearest to rest is taken.
 #[test]
 fn a_node_that_could_stick_or_slide_sticks() {
     let parameters: ContactParameters<f64> =
@@ -606,8 +606,8 @@ fn fast_sliding_is_where_friction_hardly_changes() {
     }
 }
 
-/// One node on a spring and a damper of the wall, in one step of the implicit Euler method: the implicit force is the one that the solved
-/// motion leads to, in one evaluation from any guess.
+/// One node on a spring and a damper of the wall, in one step of the implicit Euler method: the implicit force is the one that agrees with the solved
+/// motion, in one evaluation from any guess.
 #[test]
 fn an_implicit_force_agrees_with_the_motion_that_it_leads_to() {
     let law = ContactLaw { stiffness_sharpness: 1e12, damping_sharpness: 1e12, ..SOFT };
@@ -636,8 +636,8 @@ fn an_implicit_force_agrees_with_the_motion_that_it_leads_to() {
     assert!((exact.force_v / force[1] - 1.0).abs() < 1e-6, "{exact:?} against {force:?}");
 }
 
-/// The same of a node that its own force turns about the axis: with next to no clearance the wall holds it sideways as stiffly as outwards,
-/// so that a force of the right size in the direction of the last sweep would throw it across.
+/// The same of a node that its own force turns about the axis: with almost no clearance the wall holds it sideways as stiffly as outwards,
+/// so that a force of the right size in the direction of the last contact iteration would throw it across.
 #[test]
 fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
     let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
@@ -645,7 +645,7 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
     let (compliance, rate) = (2e-8, 4e3);
     for clearance in [1e-9, 1e-7] {
         let node = ContactNode { clearance, ..NODE };
-        // Where it would be without the wall, from where its velocity is the rate times what moves it, and how its surface slides.
+        // Its place without the wall; its velocity from there is the rate times the displacement, and its surface slides accordingly.
         let free = [3e-5, -4e-5];
         let motion = |force: [f64; 2]| LateralMotion {
             u: free[0] + compliance * force[0],
@@ -669,7 +669,7 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
             (yielding.force, yielding.normal, yielding.friction) = (force, contact.normal, contact.friction);
             force
         };
-        // Friction turns with the direction, which the next sweep knows: what is left falls by mu a sweep.
+        // Friction turns with the direction, which the next contact iteration knows: the remainder falls by mu an iteration.
         let swept = [sweep(), sweep(), sweep(), sweep(), sweep(), sweep()];
         let exact = dynamic_contact(&parameters, &node, &motion(swept[5]), 12.6);
         let size = exact.force_u.hypot(exact.force_v);
@@ -681,8 +681,8 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
     }
 }
 
-/// Friction of a sweep before that is out of all proportion to the push turns such a node by less than a right angle: the wall still holds
-/// it, and the sweeps come to the same force as from any other start.
+/// Friction of the contact iteration before, out of all proportion to the push, turns such a node by less than a right angle: the wall still holds
+/// it, and the iterations come to the same force as from any other start.
 #[test]
 fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
     let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
@@ -785,7 +785,7 @@ fn loads_are_derivatives_of_the_energy_in_the_wall_whatever_part_of_an_element_i
             for dof in [U, THETA_Y, DOFS + U, DOFS + THETA_Y] {
                 let unit = ElementVector::from_fn(|i, _| if i == dof { 1e-9 } else { 0.0 });
                 let work = (energy(&(values - unit)) - energy(&(values + unit))) / 2e-9;
-                // Of second order in the step, and where contact begins or parts merge of a lower one.
+                // Of second order in the step, and of a lower one if contact begins or parts merge.
                 assert!(
                     (work - contact.force[dof]).abs() < 1e-5 * (1.0 + contact.force.norm()),
                     "{dof}: {work} against {}",
@@ -807,7 +807,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
     for (upper, lower) in [(1e-4, 3e-4), (-1e-4, 2e-4), (5e-4, -3e-4), (-1e-6, 1e-3)] {
         let values = rigid(clearance + upper, clearance + lower);
         let contact = static_segment(&law, &SEGMENT, &values, 1.0).unwrap();
-        // The stretch from the zero of the gap to the end that is in.
+        // The part from the zero of the gap to the end that is in the wall.
         let slope = (lower - upper) / SEGMENT.length;
         let zero = (-upper / slope).clamp(0.0, SEGMENT.length);
         let (from, to) = if lower > upper { (zero, SEGMENT.length) } else { (0.0, zero) };
@@ -827,7 +827,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
         let work = |motion: &ElementVector| contact.force.dot(motion);
         assert_close(work(&rigid(1.0, 1.0)), -force, 1e-9);
         assert_close(work(&rigid(0.0, 1.0)), -moment / SEGMENT.length, 1e-9);
-        // It stores what has been done against it: k g^2 / 2 along the stretch, of which the force is the derivative.
+        // The wall stores the work done against it: k g^2 / 2 along that part, of which the force is the derivative.
         let energy = |by: f64| {
             let values = rigid(clearance + upper + by, clearance + lower + by);
             SEGMENT.potential_energy(&law, &planes(&values))
@@ -1048,7 +1048,7 @@ fn implicit_loads_agree_with_the_motion_that_they_lead_to() {
             iterations += 1;
             assert!(iterations <= 8, "{rotation_speed} rad/s: {change} N");
         }
-        // They are those of the law itself on the motion that they lead to.
+        // The loads are those of the law itself on the motion that they cause.
         let mut own = SegmentForce::none();
         assert!(dynamic_segment(&law, &SEGMENT, &moved(&force), rotation_speed, &mut own));
         assert_close(own.ends[0] + own.ends[1], force.ends[0] + force.ends[1], 1e-6);
@@ -1059,7 +1059,7 @@ fn implicit_loads_agree_with_the_motion_that_they_lead_to() {
 #[test]
 fn two_sliding_speeds_that_give_way_solve_their_equations() {
     let law = parameters(&BASE);
-    // Points of one element that move alike, and such that do not; fast ones with responses for which there is one solution alone.
+    // Points of one element that move alike or differently; fast ones with responses that have a single solution.
     let (all, small): (&[f64], &[f64]) = (&[1e-3, 0.03, 0.3, 3.0, 30.0], &[1e-3, 0.03, 0.1]);
     for (unopposed, shares, responses) in [
         ([1e-3, 2e-3], [0.5, 0.9, 0.99], all),

@@ -1,4 +1,4 @@
-//! The wall of a hole as a string's nodes and elements meet it.
+//! The wall of a hole, with the contact data of a string's nodes and elements.
 
 use drillsweep_scenario::{ActiveEffects, ContactLaw, StartFriction};
 
@@ -8,7 +8,7 @@ use super::node::ContactNode;
 
 /// The contact law, and the nodes and elements that can touch.
 ///
-/// Built once, with the model; statics, modes, sweep stability and the run in time take both from here.
+/// Built once, with the model; statics, modes, the stability of contact iterations and the run in time take both from here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
     law: ContactParameters<f64>,
@@ -17,8 +17,8 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// The wall of a law, with the contact data of every node, or nothing for a node that is no contact site: a held one.
-    /// Without contact no node is one. `segments` are all elements from the top if stiffness belongs to a length, and none otherwise.
+    /// The wall of a law, with the contact data of every node, or `None` for a node that is no contact site: a held one.
+    /// Without contact no node is a site. `segments` are all elements from the top if stiffness belongs to a length, and none otherwise.
     pub fn new(
         law: &ContactLaw,
         effects: &ActiveEffects,
@@ -37,12 +37,12 @@ impl Wall {
         &self.law
     }
 
-    /// Of every node, what contact needs to know of it where it is a contact site.
+    /// Contact data of every node; `None` if it is no contact site.
     pub fn sites(&self) -> &[Option<ContactNode<f64>>] {
         &self.sites
     }
 
-    /// The elements as they meet the wall, from the top; empty if the nodes alone do.
+    /// Contact data of the elements, from the top; empty if the wall acts at the nodes alone.
     pub fn segments(&self) -> &[ContactSegment<f64>] {
         &self.segments
     }
@@ -52,8 +52,8 @@ impl Wall {
         self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
     }
 
-    /// The wall with what it has along the elements put at their ends: half of each element at the nodes that it touches with its own clearance. It is the trapezoid
-    /// rule of the same wall, on the way to an equilibrium.
+    /// The wall with its contact along the elements moved to their ends: half of each element at the nodes that it touches with its own clearance. It
+    /// is the trapezoid rule of the same wall, on the way to an equilibrium.
     #[must_use]
     pub fn at_nodes(&self) -> Self {
         let mut sites = self.sites.clone();

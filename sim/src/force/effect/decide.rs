@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::register::term;
 use crate::force::term::{LateralWave, Scene};
 
-/// Change of frequencies below which the aggressive rule leaves an effect out.
+/// Change of frequencies below which the aggressive rule omits an effect.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// One effect of a scenario, decided.
@@ -22,11 +22,11 @@ pub struct EffectDecision {
     pub reason: String,
 }
 
-/// Every effect, in the order of [`Effect::ALL`], with what was decided about it and why.
+/// Every effect, in the order of [`Effect::ALL`], with the decision about it and its reason.
 ///
-/// `auto` leaves an effect out where the scene makes its term, or a motion, exactly zero, so that the
-/// numbers are those of the whole model to rounding; and the run in time where nothing in time is asked for. Only the
-/// aggressive rule neglects what is small.
+/// `auto` omits an effect if the scenario makes its term, or a motion, exactly zero, so that the
+/// numbers are those of the whole model to rounding. It omits the run in time if no output in time is requested. Only the
+/// aggressive rule neglects small effects.
 pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
     // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
     let mut active = ActiveEffects::ALL;
@@ -64,8 +64,8 @@ pub fn active_effects(scenario: &Scenario) -> ActiveEffects {
     active
 }
 
-/// By what share of itself an effect is estimated to change the frequency of a lateral wave that turns with the string, the
-/// largest of any section; infinite where no such estimate is made.
+/// Estimated relative change by an effect of the frequency of a lateral wave that turns with the string, the
+/// largest of any section; infinite without an estimate.
 fn frequency_change(scenario: &Scenario, effect: Effect) -> f64 {
     let Some(estimate) = term(effect).frequency_change else { return f64::INFINITY };
     let of_section = |section| {
@@ -87,7 +87,7 @@ mod tests {
         preset("paper-200m").unwrap()
     }
 
-    /// Names of the effects that `auto` leaves out.
+    /// Names of the effects that `auto` omits.
     fn left_out(change: impl Fn(&mut Scenario)) -> Vec<&'static str> {
         let mut scenario = paper();
         scenario.effects = Effects::default();
@@ -138,7 +138,7 @@ mod tests {
         };
         let still = ["friction", "friction_torque", "well_bending", "torsion", "axial_motion"];
         assert_eq!(left_out(both), still);
-        // Below the string the hole may do as it likes.
+        // The hole below the string does not matter.
         let curved_below = |s: &mut Scenario| {
             both(s);
             let last = *s.well.survey.last().unwrap();
@@ -169,7 +169,7 @@ mod tests {
         );
         assert_eq!((of(Effect::Friction).active, of(Effect::Friction).reason.as_str()), (true, "requested"));
         assert!(of(Effect::Gyroscopic).active);
-        // Friction torque follows from what was decided of contact.
+        // Friction torque follows from the decision about contact.
         assert_eq!(of(Effect::FrictionTorque).reason, "there is no contact");
     }
 
@@ -187,7 +187,7 @@ mod tests {
         assert!(!of(Effect::Gyroscopic).active);
         assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
         assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
-        // Fast flow is felt.
+        // Fast flow has an effect.
         scenario.mud.as_mut().unwrap().flow_rate = 0.5;
         let decisions = decide_effects(&scenario);
         let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();

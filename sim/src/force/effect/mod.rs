@@ -1,4 +1,4 @@
-//! The register of effects, each with its term, and of the accounts of the energy ledger; decisions which effects a scenario activates.
+//! The register of effects, each with its term, and of the accounts of the energy ledger; decisions about the effects that a scenario activates.
 
 mod decide;
 mod register;

@@ -25,7 +25,7 @@ pub struct ElementFlow {
     pub annulus_speed: f64,
     /// Mean speed down the bore U_i \[m/s\].
     pub bore_speed: f64,
-    /// Wall shear stress tau_w of the annular flow, were it laminar and concentric \[Pa\].
+    /// Wall shear stress tau_w that the annular flow would have if it were laminar and concentric \[Pa\].
     pub wall_shear_stress: f64,
     /// Generalized index N = d ln tau_w / d ln U_o of that flow.
     pub generalized_index: f64,
@@ -41,7 +41,7 @@ pub struct ElementFlow {
     pub friction_coefficient: f64,
     /// Frictional pressure gradient of the annulus G_a \[Pa/m\].
     pub friction_gradient: f64,
-    /// Kinematic apparent viscosity nu_f \[m2/s\]; 0 where nothing shears a mud that has none at rest.
+    /// Kinematic apparent viscosity nu_f \[m2/s\]; 0 without shear for a mud that has no viscosity at rest.
     pub apparent_viscosity: f64,
     /// Damping k of lateral motion by the rotating pipe \[N s/m2\].
     pub rotation_damping: f64,
@@ -57,14 +57,14 @@ pub struct ElementFlow {
     pub bore_friction_gradient: f64,
     /// Drag of the annular flow on the pipe F_L = 1/2 C_f rho D_o U_o^2 \[N/m\], upward.
     pub drag_per_length: f64,
-    /// Drag as it acts on the effective tension F_L + A_o G_a = F_L D_ch / (D_ch - D_o) \[N/m\], upward.
+    /// Drag in the effective tension F_L + A_o G_a = F_L D_ch / (D_ch - D_o) \[N/m\], upward.
     pub effective_drag_per_length: f64,
 }
 
 /// The flow past one element: [`SectionFlow::new`], then [`SectionFlow::at_eccentricity`].
 ///
 /// # Errors
-/// As these two.
+/// [`SectionFlow::new`] or [`SectionFlow::at_eccentricity`] fails.
 pub fn element_flow(
     mud: &Mud,
     geometry: &FlowGeometry,
@@ -74,7 +74,7 @@ pub fn element_flow(
     SectionFlow::new(mud, geometry, rotation_speed)?.at_eccentricity(eccentricity)
 }
 
-/// Flow past a cross-section, as far as it does not depend on where the pipe lies in the hole.
+/// Flow past a cross-section, as far as it does not depend on the pipe's position in the hole.
 ///
 /// All elements of the same diameters share it: the equations that need iteration are solved here, once.
 #[derive(Debug, Clone)]
@@ -101,11 +101,11 @@ struct SectionFriction {
 }
 
 impl SectionFlow {
-    /// Solves for wall stresses, bore friction and, where the mud asks for it, the rotation factor.
+    /// Solves for wall stresses, bore friction and, if the mud requests it, the rotation factor.
     /// `rotation_speed` is Omega \[rad/s\].
     ///
     /// # Errors
-    /// A mud property out of its range, or diameters that do not nest.
+    /// A mud property is out of its range, or the diameters do not nest.
     pub fn new(mud: &Mud, geometry: &FlowGeometry, rotation_speed: f64) -> Result<Self, MudError> {
         let rheology = Rheology::new(mud)?;
         let density = check("mud density", mud.density, "positive", mud.density > 0.0)?;
@@ -162,7 +162,7 @@ impl SectionFlow {
     /// damping 1/2 C_f rho D_o U_o: a mud with yield stress has no finite limit there.
     ///
     /// # Errors
-    /// An eccentricity that is negative or NaN, or a result that is not finite.
+    /// The eccentricity is negative or NaN, or a result is not finite.
     pub fn at_eccentricity(&self, eccentricity: f64) -> Result<ElementFlow, MudError> {
         let e = check("eccentricity", eccentricity.min(1.0), "0 or more", eccentricity >= 0.0)?;
         let FlowGeometry { hole_diameter, outer_diameter, .. } = self.geometry;
@@ -206,7 +206,7 @@ impl SectionFlow {
                     limits,
                 };
                 let (regime, fanning) = friction.at(flow.reynolds_number, self.mud.regime);
-                // The wall stress that this friction factor stands for, the same on both walls.
+                // The wall stress of this friction factor, the same on both walls.
                 let dynamic_pressure = 0.5 * density * self.annulus_speed.powi(2);
                 let wall_friction = fanning * dynamic_pressure;
                 let drag_per_length = PI * outer_diameter * wall_friction;
@@ -252,7 +252,7 @@ impl SectionFlow {
 }
 
 impl ElementFlow {
-    /// Passes the flow on, or names what is not finite in it (flows of 1e-150 m3/s and the like).
+    /// Passes the flow on, or names the quantity in it that is not finite (flows of 1e-150 m3/s and the like).
     fn all_finite(self) -> Result<Self, MudError> {
         let quantities = [
             ("wall shear stress", self.wall_shear_stress),

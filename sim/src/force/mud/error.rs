@@ -25,7 +25,7 @@ pub enum MudError {
         /// D_ch \[m\].
         hole_diameter: f64,
     },
-    /// The inputs are admissible one by one, but a result of theirs exceeds floating point.
+    /// The inputs are admissible one by one, but a result exceeds floating point.
     #[error("the {0} of this flow is not a finite number")]
     NotFinite(&'static str),
     /// Depths do not fit the steps of a pressure profile: it needs one node more than steps.
@@ -38,7 +38,7 @@ pub enum MudError {
     },
 }
 
-/// Passes `value` on where `admissible`, and names it otherwise.
+/// Passes `value` on if `admissible`, and names it otherwise.
 pub(super) fn check(
     quantity: &'static str,
     value: f64,

@@ -15,7 +15,7 @@ pub(super) struct FrictionFactor {
     pub(super) laminar_factor: f64,
     /// Factor on turbulent friction.
     pub(super) turbulent_factor: f64,
-    /// Generalized index as the correlations take it.
+    /// Generalized index for the correlations.
     pub(super) index: f64,
     /// Limits of the flow regimes.
     pub(super) limits: RegimeLimits,
@@ -138,7 +138,7 @@ mod tests {
         for limit in [2241.0_f64, 4402.0] {
             let x = limit.ln();
             // A one-sided difference errs by h f''/2; halving h must halve the mismatch of the two sides,
-            // and so must the jump of the value, which is the slope times 2 h.
+            // and also the jump of the value, which is the slope times 2 h.
             let mismatch =
                 |h: f64| ((ln_f(x + h) - ln_f(x + 1e-12)) / h - (ln_f(x - 1e-12) - ln_f(x - h)) / h).abs();
             assert!(mismatch(1e-3) < 1e-2 && mismatch(5e-4) < 0.55 * mismatch(1e-3), "{}", mismatch(1e-3));

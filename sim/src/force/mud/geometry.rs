@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use crate::string::beam::BeamSection;
 
-/// Diameters that the mud sees. Bodies only: a gauge of stabilizer or bit narrows contact, not flow.
+/// Diameters for the flow of mud. Bodies only: a gauge of stabilizer or bit narrows contact, not flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowGeometry {
     /// Diameter of the hole D_ch \[m\].

@@ -2,7 +2,7 @@
 
 use super::rheology::Rheology;
 
-/// A laminar flow as its walls see it.
+/// A laminar flow by its quantities at the wall.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LaminarFlow {
     /// tau_w \[Pa\].

@@ -1,4 +1,4 @@
-//! Mass and momentum that the two flows past a section carry along, and the annulus' added mass.
+//! Mass and momentum of the two flows past a section, and the annulus' added mass.
 
 use drillsweep_scenario::Mud;
 
@@ -46,7 +46,7 @@ impl FlowMomentum {
         self.bore_mass + self.added_mass_coefficient * self.displaced_mass
     }
 
-    /// M_f U_i^2 + chi rho_f A_o U_o^2 \[N\]: by so much the flows lessen the tension that holds the string straight.
+    /// M_f U_i^2 + chi rho_f A_o U_o^2 \[N\]: reduction by the flows of the tension that holds the string straight.
     pub fn lateral_flux(&self) -> f64 {
         self.bore_flux + self.added_mass_coefficient * self.annulus_flux
     }

@@ -32,7 +32,7 @@ pub struct Pressures {
 /// bottom and is followed upwards along dp_i = rho g dTVD - G_i ds.
 ///
 /// # Errors
-/// Depths that do not fit the elements, or a pressure that is not finite.
+/// Depths do not fit the elements, or a pressure is not finite.
 pub fn pressures(
     mud: &Mud,
     gravity: f64,

@@ -1,4 +1,4 @@
-//! Flow regimes and where they end.
+//! Flow regimes and their limits.
 
 /// State of a flow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -34,7 +34,7 @@ pub(super) struct RegimeLimits {
     pub(super) turbulent: f64,
 }
 
-/// The generalized index that the correlations are given, N cut to \[0.15, 1\].
+/// The generalized index for the correlations, N cut to \[0.15, 1\].
 ///
 /// The limits were fitted for 0.15 < N < 0.4, the turbulent factor for 0.36 to 1, the eccentricity factors
 /// for 0.4 to 1. Below 0.15 (mud creeping little above its yield stress) the terms in 1/N take over and would
@@ -44,7 +44,7 @@ pub(super) fn correlation_index(generalized_index: f64) -> f64 {
     generalized_index.clamp(0.15, 1.0)
 }
 
-/// Width of the transition below which the annular limits are not let close:
+/// Smallest width of the annular transition:
 /// Founargiotakis, Kelessidis and Maglione (2008) on the same Reynolds number, 3250 - 1150 N to 4150 - 1150 N.
 /// The limits below would meet and cross near N = 0.9.
 const NARROWEST_TRANSITION: f64 = 900.0;

@@ -35,8 +35,8 @@ impl Rheology {
         ((stress - self.yield_stress).max(0.0) / self.consistency).powf(1.0 / self.flow_index)
     }
 
-    /// Dynamic apparent viscosity tau / gamma \[Pa s\]. At rest it is K for a Newtonian fluid; any other
-    /// fluid has none there, and the answer is 0.
+    /// Dynamic apparent viscosity tau / gamma \[Pa s\]. At rest it is K for a Newtonian fluid; for any other
+    /// fluid it does not exist there, and the result is 0.
     pub(super) fn apparent_viscosity(&self, shear_rate: f64) -> f64 {
         if shear_rate > 0.0 {
             self.stress(shear_rate) / shear_rate

@@ -82,7 +82,7 @@ impl HelicalSlot {
         at
     }
 
-    /// None where no part of the gap is sheared.
+    /// Derivatives of the potential; `None` if no part of the gap is sheared.
     fn derivatives(&self, [gradient, tangential]: [f64; 2]) -> Option<Derivatives> {
         let plug = if tangential.abs() < self.yield_stress {
             (self.yield_stress.powi(2) - tangential.powi(2)).sqrt() / gradient.abs()
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn fast_rotation_leaves_the_viscosity_of_the_couette_flow() {
         // With U << V the stress is uniform, mu = tau(gamma_c) / gamma_c at gamma_c = V / 2H, and the axial flow is
-        // the Newtonian G = 3 mu U / H^2. What is left is of second order in U / V.
+        // the Newtonian G = 3 mu U / H^2. The remainder is of second order in U / V.
         let (wall_speed, half_gap) = (10.0, GAP / 4.0);
         for rheology in [MUD, Rheology { yield_stress: 0.0, ..MUD }, Rheology { flow_index: 0.2, ..MUD }] {
             let couette = wall_speed / (2.0 * half_gap);

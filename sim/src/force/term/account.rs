@@ -1,6 +1,6 @@
-//! The accounts of the energy ledger: each is declared by the effect whose work it tells of.
+//! The accounts of the energy ledger: each is declared by the effect whose work it books.
 
-/// An account of the energy ledger. What the string's energy gains is what is given to it less what is taken from it, but for the
+/// An account of the energy ledger. The gain of the string's energy is the energy given to it less the energy taken from it, but for the
 /// integration's own error.
 #[derive(Debug, Clone, Copy)]
 pub struct Account {
@@ -11,7 +11,7 @@ pub struct Account {
     /// True if the account holds energy that the drive passes straight on to steady sliding: such accounts count by their balance alone in the
     /// energy that the vibration turns over.
     pub is_passed_on: bool,
-    /// Its value by what is booked \[J\].
+    /// Its value by the booked energies \[J\].
     pub(crate) value: fn(&Booked<'_>) -> f64,
 }
 
@@ -22,11 +22,11 @@ pub enum Side {
     Given,
     /// Energy taken from it.
     Taken,
-    /// Neither: made of what other accounts hold, and told beside them.
+    /// Neither: a combination of other accounts, reported in addition to them.
     Beside,
 }
 
-/// Energies that the ledger has booked since the start of a run, as an account sees them \[J\].
+/// Energies that the ledger has booked since the start of a run, for the value of an account \[J\].
 #[derive(Debug, Clone, Copy)]
 pub struct Booked<'a> {
     /// Works of forces by their entries.
@@ -34,7 +34,7 @@ pub struct Booked<'a> {
     /// Work of the matrices that multiply velocities and were added to [`MotionTerms`](super::MotionTerms) under this account,
     /// counted in the sense of its side.
     pub matrices: f64,
-    /// Work of what in the stiffness has no potential, its skew part.
+    /// Work of the part of the stiffness without a potential, its skew part.
     pub follower: f64,
     /// Change of the energy stored in the wall.
     pub wall: f64,
@@ -58,19 +58,19 @@ impl Account {
         Self { name, side: Side::Taken, is_passed_on: false, value }
     }
 
-    /// An account that is told beside the balance.
+    /// An account that is reported in addition to the balance.
     pub(crate) const fn beside(name: &'static str, value: fn(&Booked<'_>) -> f64) -> Self {
         Self { name, side: Side::Beside, is_passed_on: false, value }
     }
 
-    /// The same, of what the drive passes straight on to steady sliding.
+    /// The same, for energy that the drive passes straight on to steady sliding.
     pub(crate) const fn passed_on(self) -> Self {
         Self { is_passed_on: true, ..self }
     }
 }
 
 impl Side {
-    /// A sum with a value of this side added: positive is what the string gains.
+    /// A sum with a value of this side added: positive is a gain of the string.
     pub fn add(self, sum: f64, value: f64) -> f64 {
         match self {
             Side::Given => sum + value,

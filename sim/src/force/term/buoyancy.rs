@@ -1,4 +1,4 @@
-//! Weight of the mud in the bore less the buoyancy of the mud outside: without it the string weighs what its steel weighs.
+//! Weight of the mud in the bore less the buoyancy of the mud outside: without it the string has the weight of its steel.
 
 use super::contribution::Term;
 use super::element::{ElementAtRest, RestTerms};

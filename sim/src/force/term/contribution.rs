@@ -6,11 +6,11 @@ use super::scene::{Call, LateralWave, Scene};
 /// Contributions of an effect.
 #[derive(Clone, Copy)]
 pub(crate) struct Term {
-    /// Decision whether a scene calls for it, and why.
+    /// Decision on whether a scenario needs the effect, with its reason.
     pub(crate) called_for: fn(&Scene<'_>) -> Call,
     /// Estimated relative change of the frequency of a lateral wave; absent without such an estimate.
     pub(crate) frequency_change: Option<fn(&LateralWave) -> f64>,
-    /// Adds its terms to an element, whatever the equilibrium.
+    /// Adds its terms to an element, independently of the equilibrium.
     pub(super) at_rest: Option<fn(&ElementAtRest<'_>, &mut RestTerms)>,
     /// Adds its terms to the motion of an element about the equilibrium.
     pub(super) in_motion: Option<fn(&ElementInMotion<'_>, &mut MotionTerms)>,
@@ -24,14 +24,14 @@ impl Term {
         Self { called_for, frequency_change: None, at_rest: None, in_motion: None, moves: None }
     }
 
-    /// Adds to an element what the effect makes of it, whatever the equilibrium.
+    /// Adds the effect's terms to an element, independently of the equilibrium.
     pub(crate) fn add_at_rest(&self, element: &ElementAtRest<'_>, terms: &mut RestTerms) {
         if let Some(add) = self.at_rest {
             add(element, terms);
         }
     }
 
-    /// Adds to the motion of an element about the equilibrium.
+    /// Adds the effect's terms to the motion of an element about the equilibrium.
     pub(crate) fn add_in_motion(&self, element: &ElementInMotion<'_>, terms: &mut MotionTerms) {
         if let Some(add) = self.in_motion {
             add(element, terms);

@@ -8,7 +8,7 @@ use crate::force::mud::{ElementFlow, FlowMomentum};
 use crate::string::beam::{BeamElement, Chord, ElementMatrix, ElementVector};
 use crate::string::well::NodeFrame;
 
-/// An element as effects see it before anything is known of the equilibrium.
+/// An element before the equilibrium is known, for the terms of effects.
 pub struct ElementAtRest<'a> {
     /// The beam in its chord frame.
     pub beam: &'a BeamElement,
@@ -20,7 +20,7 @@ pub struct ElementAtRest<'a> {
     pub frames: [&'a NodeFrame; 2],
     /// Curvature vector of the centre line at mid-element \[1/m\], global.
     pub curvature: Vector3<f64>,
-    /// The mud with the flows past the element, where there is any.
+    /// The mud with the flows past the element; absent without mud.
     pub mud: Option<(&'a Mud, &'a FlowMomentum)>,
     /// True for the element whose lower node is the bit.
     pub ends_at_bit: bool,
@@ -29,9 +29,9 @@ pub struct ElementAtRest<'a> {
 /// Terms that effects add to an element at rest, in the chord frame.
 #[derive(Debug, Clone)]
 pub struct RestTerms {
-    /// Weight over gravity, of steel and whatever hangs on it \[kg/m\].
+    /// Weight over gravity, of steel and mud \[kg/m\].
     pub mass_per_length: f64,
-    /// Distributed load besides the weight along e1, e2, e3 \[N/m\].
+    /// Distributed load in addition to the weight, along e1, e2, e3 \[N/m\].
     pub distributed: [f64; 3],
     /// Nodal loads.
     pub nodal: ElementVector,
@@ -44,7 +44,7 @@ pub struct RestTerms {
 }
 
 impl RestTerms {
-    /// Terms of an element of so much mass and nothing else \[kg/m\].
+    /// Terms of an element of `mass_per_length` \[kg/m\] and nothing else.
     pub(crate) fn of_mass(mass_per_length: f64) -> Self {
         Self {
             mass_per_length,
@@ -57,7 +57,7 @@ impl RestTerms {
     }
 }
 
-/// An element as effects see it in motion about an equilibrium; its matrices are over nodal values.
+/// An element in motion about an equilibrium, for the terms of effects; its matrices are over nodal values.
 pub struct ElementInMotion<'a> {
     /// The beam in its chord frame.
     pub beam: &'a BeamElement,
@@ -73,16 +73,16 @@ pub struct ElementInMotion<'a> {
     pub rotation_speed: f64,
     /// Rayleigh damping of the structure.
     pub damping: RayleighDamping,
-    /// Masses and momentum of the flows past the element, where there is mud.
+    /// Masses and momentum of the flows past the element; absent without mud.
     pub momentum: Option<&'a FlowMomentum>,
-    /// The flow past it at the equilibrium, where there is mud.
+    /// The flow past it at the equilibrium; absent without mud.
     pub flow: Option<&'a ElementFlow>,
 }
 
 /// Terms that effects add to the motion of an element, over nodal values.
 #[derive(Debug, Clone, Default)]
 pub struct MotionTerms {
-    /// Mass besides the structure's.
+    /// Mass in addition to the structure's.
     pub mass: Option<ElementMatrix>,
     /// Matrices that multiply velocities, each with the account of its work.
     pub damping: Vec<(Option<&'static Account>, ElementMatrix)>,

@@ -1,5 +1,5 @@
 //! Flow stiffness of both flows with its end term, and their centrifugal load on the curved centre line: without it the
-//! mud's momentum does nothing.
+//! mud's momentum has no effect.
 
 use super::contribution::Term;
 use super::element::{ElementAtRest, RestTerms};

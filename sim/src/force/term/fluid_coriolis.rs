@@ -1,4 +1,4 @@
-//! Coriolis terms of both flows: without them a flow does no work on a bend that travels.
+//! Coriolis terms of both flows: without them a flow does no work on a travelling bend.
 
 use super::account::Account;
 use super::contribution::Term;
@@ -8,7 +8,7 @@ use super::scene::{LateralWave, has_flow};
 pub(crate) const TERM: Term =
     Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(has_flow) };
 
-/// Work done by the flows: of the Coriolis terms, whose symmetric part is where the section changes and at the end, and of the follower
+/// Work done by the flows: by the Coriolis terms, whose symmetric part is at changes of the section and at the end, and by the follower
 /// forces in the stiffness, which are those of the [flow](super::flow_stiffness) at its end and of the
 /// [torque](super::torque_stiffening).
 pub(crate) const WORK: Account =

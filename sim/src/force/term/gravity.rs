@@ -1,4 +1,4 @@
-//! Gravity: without it neither the string nor the mud weighs anything.
+//! Gravity: without it neither the string nor the mud has weight.
 
 use super::contribution::Term;
 use super::scene::yes;
@@ -13,7 +13,7 @@ fn called_for(_: &Scene<'_>) -> Call {
     yes("the string has weight")
 }
 
-/// The acceleration \[m/s2\] that makes weight and hydrostatic pressure.
+/// The acceleration \[m/s2\] of weight and hydrostatic pressure.
 pub(crate) fn acceleration(is_active: bool) -> f64 {
     if is_active { GRAVITY } else { 0.0 }
 }

@@ -1,8 +1,8 @@
 //! Terms of the model that matrices and constant loads hold, one file of each effect.
 //!
-//! A [`Term`] is the contribution of an effect: the decision whether a scene calls for it, what it adds to an element at rest and in motion, the degree
-//! of freedom that moves only with it, and an estimate of its change of frequencies. Element, equations of motion and decisions iterate over the terms of
-//! the active effects. An effect that does work declares its [`Account`] of the energy ledger. Forces that no matrix holds are in
+//! A [`Term`] is the contribution of an effect: the decision on whether a scenario needs it, its terms of an element at rest and in motion, the
+//! degree of freedom that moves only with it, and an estimate of its change of frequencies. Element, equations of motion and decisions iterate over
+//! the terms of the active effects. An effect that does work declares its [`Account`] of the energy ledger. Forces that no matrix holds are in
 //! [`force`](crate::force).
 
 pub(crate) mod account;
@@ -31,7 +31,7 @@ pub use element::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
 pub use scene::{Call, Scene};
 pub(crate) use scene::{LateralWave, has_friction, no, yes};
 
-/// The accounts of the matrices that multiply velocities, in the order in which these are summed up; `None` is that of skew ones, which do
+/// The accounts of the matrices that multiply velocities, in the order in which these are summed up; `None` is that of skew matrices, which do
 /// no work.
 pub const DAMPING: [Option<&Account>; 4] = [
     Some(&structural_damping::DISSIPATED),

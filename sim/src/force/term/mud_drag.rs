@@ -6,7 +6,7 @@ use crate::force::mud::ElementFlow;
 
 pub(crate) const TERM: Term = Term::new(has_flow);
 
-/// Drag on every element as it acts on the effective tension, upward \[N/m\].
+/// Drag on every element in the effective tension, upward \[N/m\].
 pub(crate) fn per_length(flows: &[ElementFlow]) -> Vec<f64> {
     flows.iter().map(|flow| flow.effective_drag_per_length).collect()
 }

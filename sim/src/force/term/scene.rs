@@ -1,4 +1,4 @@
-//! Properties of a scene that call for effects.
+//! Properties of a scenario that activate effects.
 
 use std::f64::consts::PI;
 
@@ -7,11 +7,11 @@ use drillsweep_scenario::{ActiveEffects, Mud, Scenario, Section, SurveyStation};
 use crate::force::mud::{FlowGeometry, FlowMomentum};
 use crate::string::beam::BeamSection;
 
-/// A scenario, and what was decided of the effects so far.
+/// A scenario, with the decisions about its effects so far.
 pub struct Scene<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
-    /// The effects before this one in their order, decided; those after it count as active.
+    /// Decisions about the effects before this one in their order; later effects count as active.
     pub active: &'a ActiveEffects,
 }
 
@@ -24,12 +24,12 @@ pub struct Call {
     pub reason: &'static str,
 }
 
-/// The scene calls for the effect.
+/// The scenario needs the effect.
 pub(crate) const fn yes(reason: &'static str) -> Call {
     Call { active: true, reason }
 }
 
-/// It does not.
+/// The scenario does not need the effect.
 pub(crate) const fn no(reason: &'static str) -> Call {
     Call { active: false, reason }
 }
@@ -51,12 +51,12 @@ impl Scene<'_> {
     }
 }
 
-/// Call for an effect of mud, wherever it is.
+/// Decision about an effect of mud, at rest or in flow.
 pub(crate) fn has_mud(scene: &Scene<'_>) -> Call {
     if scene.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
 }
 
-/// Call for an effect of flowing mud.
+/// Decision about an effect of flowing mud.
 pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
     match &scene.scenario.mud {
         None => no("the hole is dry"),
@@ -65,7 +65,7 @@ pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
     }
 }
 
-/// Call for friction at the wall.
+/// Decision about friction at the wall.
 pub(crate) fn has_friction(scene: &Scene<'_>) -> Call {
     let law = &scene.scenario.contact;
     match (scene.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {
@@ -86,7 +86,7 @@ pub(crate) struct LateralWave {
     pub(crate) beam: BeamSection,
     /// Density of its material \[kg/m3\].
     pub(crate) density: f64,
-    /// The flows past it, where there is mud.
+    /// The flows past it; absent without mud.
     pub(crate) flow: Option<FlowMomentum>,
     /// m, mud included \[kg/m\].
     pub(crate) mass: f64,
@@ -97,7 +97,7 @@ pub(crate) struct LateralWave {
 }
 
 impl LateralWave {
-    /// Mean section along a section of a scenario's string.
+    /// Wave along a section of a scenario's string.
     pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
         let material = scenario.string.body_material(section);
         let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);

@@ -11,7 +11,7 @@ fn called_for(scene: &Scene<'_>) -> Call {
     match (scene.scenario.operation.torque_on_bit != 0.0, scene.active.friction_torque) {
         (true, _) => yes("torque on bit"),
         (false, true) => yes("friction twists the string"),
-        // A curved hole guides torque, but makes none.
+        // A curved hole guides torque but does not produce it.
         (false, false) => no("nothing twists the string"),
     }
 }

@@ -1,6 +1,6 @@
 //! Convergence of contact iterations.
 
-/// Changes that the last sweep of a solve still made at nodes that touch.
+/// Changes that the last contact iteration of a solve still made at touching nodes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct SweepChange {
     /// Largest change of a lateral displacement \[m\].

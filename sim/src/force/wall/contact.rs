@@ -1,5 +1,5 @@
-//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::force::contact`], which the time step asks for
-//! four nodes side by side.
+//! Normal contact with the borehole: without it a node passes through the wall. Its law is [`crate::force::contact`], which the time step evaluates
+//! four nodes at a time.
 
 use super::{FRICTION_WORK, NORMAL_WORK};
 use crate::force::term::{Account, Call, Scene, Term, yes};
@@ -8,11 +8,11 @@ use crate::math::linalg::Lane;
 
 pub(crate) const TERM: Term = Term::new(called_for);
 
-/// Energy dissipated by the contacts' dampers: what the wall takes from the motion along its normals and does not store.
+/// Energy dissipated by the contacts' dampers: energy that the wall takes from the motion along its normals and does not store.
 pub(crate) const DISSIPATED: Account =
     Account::taken("dissipated_contact", |booked| -booked.by_force(NORMAL_WORK) - booked.wall);
 
-/// Work of the wall's normal and friction forces on the motion: what the ledger's residual is compared with.
+/// Work of the wall's normal and friction forces on the motion, for comparison with the ledger's residual.
 pub(crate) const WORK: Account =
     Account::beside("contact_work", |booked| booked.by_force(NORMAL_WORK) + booked.by_force(FRICTION_WORK));
 
@@ -20,8 +20,8 @@ fn called_for(_: &Scene<'_>) -> Call {
     yes("the string may reach the wall; until then only the distance is computed")
 }
 
-/// Power \[W\] of a normal force \[N\] on a node's motion, along the radius at the distance \[m\] from the axis that it was evaluated
-/// at.
+/// Power \[W\] of a normal force \[N\] on a node's motion, along the radius at the distance \[m\] from the axis at which it was
+/// evaluated.
 #[inline(always)]
 pub(crate) fn power<L: Lane>(
     normal_force: L,

@@ -1,4 +1,4 @@
-//! Friction torque about the string's axis at contacts: without it rubbing does not twist the string. Its law is [`crate::force::contact`], with
+//! Friction torque about the string's axis at contacts: without it friction does not twist the string. Its law is [`crate::force::contact`], with
 //! that of [friction](super::friction).
 
 use super::ROTATION_WORK;
@@ -10,7 +10,7 @@ pub(crate) const TERM: Term = Term::new(has_friction);
 pub(crate) const ROTATION: Account =
     Account::given("work_rotation", |booked| booked.by_force(ROTATION_WORK)).passed_on();
 
-/// Power \[W\] of the imposed rotation \[rad/s\] against friction torques of so much in all \[N m\]: nodes turn in a frame that turns
+/// Power \[W\] of the imposed rotation \[rad/s\] against the sum of friction torques \[N m\]: nodes turn in a frame that turns
 /// with the string, and the drive works against the torque there.
 #[inline(always)]
 pub(crate) fn power_of_rotation(torque: f64, rotation_speed: f64) -> f64 {

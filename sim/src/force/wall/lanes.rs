@@ -10,12 +10,12 @@ use crate::force::contact::{
 use crate::math::dof::{Dofs, U, V};
 use crate::math::linalg::{Block, Four, InverseBands, Lane, Mask, NodalField};
 
-/// Contact forces of one evaluation: at nodes, four side by side, and along elements.
+/// Contact forces of one evaluation: at nodes, four at a time, and along elements.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactForces {
     groups: Vec<GroupContact>,
     pub(crate) along: SegmentForces,
-    /// If the wall acts along elements, the motion of each node's surface, four side by side, and its share of the normal forces: known at the ends of
+    /// Motion of each node's surface, four at a time, and its share of the normal forces, if the wall acts along elements: known at the ends of
     /// steps alone.
     surfaces: Vec<NodeSurfaces>,
 }
@@ -23,7 +23,7 @@ pub(crate) struct ContactForces {
 /// Motion of the surfaces of four nodes on a wall that acts along elements.
 #[derive(Debug, Clone, Copy)]
 struct NodeSurfaces {
-    /// Penetrations \[m\]; zero where a node is off the wall.
+    /// Penetrations \[m\]; zero for a node off the wall.
     penetration: Four,
     /// Sliding speeds \[m/s\].
     sliding_speed: Four,
@@ -31,7 +31,7 @@ struct NodeSurfaces {
     normal_force: Four,
 }
 
-/// Action of the wall on four nodes; zero for one that does not touch.
+/// Action of the wall on four nodes; zero for a node that does not touch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GroupContact {
     /// Penetrations \[m\] if any node touches.
@@ -46,7 +46,7 @@ pub(crate) struct GroupContact {
     friction: Four,
     /// Sliding speed \[m/s\].
     sliding_speed: Four,
-    /// Distance from the axis where a node touches, 1 elsewhere \[m\].
+    /// Distance from the axis of a node that touches, 1 for others \[m\].
     pub(crate) radius: Four,
 }
 
@@ -78,7 +78,7 @@ struct GroupCompliance {
 }
 
 impl ContactForces {
-    /// No contact of a string.
+    /// Contact forces of a string that does not touch.
     pub(crate) fn none<const D: usize>(forces: &WallForces<D>) -> Self {
         let groups = forces.sites.len();
         let none =
@@ -90,12 +90,12 @@ impl ContactForces {
         }
     }
 
-    /// The groups of which any node touches, with their numbers.
+    /// The groups with a touching node, with their numbers.
     pub(crate) fn touching(&self) -> impl Iterator<Item = (usize, &GroupContact)> {
         self.groups.iter().enumerate().filter(|(_, group)| group.penetration.is_some())
     }
 
-    /// Raises `peaks` to the normal forces where they are larger \[N\], four nodes side by side; `sums` is room for as many.
+    /// Raises `peaks` to the larger normal forces \[N\], four nodes at a time; `sums` is scratch of the same size.
     pub(crate) fn add_to_peaks(&self, peaks: &mut [Four], sums: &mut [Four]) {
         if self.surfaces.is_empty() {
             for (group, contact) in self.touching() {
@@ -112,13 +112,13 @@ impl ContactForces {
         }
     }
 
-    /// Takes over what the wall does elsewhere, but for the motion of the nodes' surfaces.
+    /// Takes over the contact forces of another evaluation, but for the motion of the nodes' surfaces.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.groups.copy_from_slice(&other.groups);
         self.along.copy_from(&other.along);
     }
 
-    /// Visits every node in turn with what the wall does to it.
+    /// Visits every node in turn with the action of the wall on it.
     #[inline(always)]
     pub(crate) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
         for (index, group) in self.groups.iter().enumerate() {
@@ -160,16 +160,16 @@ impl GroupContact {
 pub(crate) struct WallForces<const D: usize> {
     rotation_speed: f64,
     parameters: ContactParameters<Four>,
-    /// Four nodes side by side; those that are no contact sites have a clearance that nothing reaches.
+    /// Contact data, four nodes at a time; nodes that are no contact sites have an unreachable clearance.
     sites: Vec<ContactNode<Four>>,
-    /// Groups of which the wall pushes any node as a node: all, or those of gauges if it acts along elements.
+    /// Groups with a node that the wall pushes as a node: all, or those of gauges if it acts along elements.
     pushed: Vec<bool>,
     segments: Segments<D>,
     freedoms: Dofs<D>,
 }
 
 impl<const D: usize> WallForces<D> {
-    /// Forces of a wall on a string that turns with `rotation_speed` \[rad/s\]; without contact of nodes if it does not `act`.
+    /// Forces of a wall on a string that turns with `rotation_speed` \[rad/s\]; without contact at nodes if it does not `act`.
     pub(crate) fn new(
         wall: &Wall,
         acts: bool,
@@ -214,7 +214,7 @@ impl<const D: usize> WallForces<D> {
         self.freedoms.twist()
     }
 
-    /// Radii of the nodes' surfaces at the wall \[m\], four side by side; zero where a node cannot touch.
+    /// Radii of the nodes' surfaces at the wall \[m\], four at a time; zero for a node that cannot touch.
     pub(crate) fn contact_radii(&self) -> impl Iterator<Item = Four> {
         self.sites.iter().map(|site| site.contact_radius)
     }
@@ -243,8 +243,8 @@ impl<const D: usize> WallForces<D> {
         }
     }
 
-    /// Contact forces for given displacements and velocities, and in `all` what they come to with the `others`. The clamped
-    /// top node never touches. `rates` gives the rate of a degree of freedom of a group.
+    /// Contact forces for given displacements and velocities, with their sum with the `others` in `all`. The clamped
+    /// top node never touches. `rates` returns the rate of a degree of freedom of a group.
     pub(crate) fn contact_into(
         &self,
         x: &NodalField<D>,
@@ -303,8 +303,8 @@ impl<const D: usize> WallForces<D> {
         }
     }
 
-    /// The same as [implicit](implicit_contact) forces, where `out` holds those that the motion was found with and the nodes give way
-    /// with `compliance`, at `speed` \[1/s\] of the displacement.
+    /// The same with [implicit](implicit_contact) forces: on entry `out` holds the forces that the motion was found with. The nodes have the
+    /// `compliance`, with velocities of `speed` \[1/s\] times the displacement.
     pub(crate) fn implicit_contact_into(
         &self,
         (compliance, speed): (&Compliance, f64),
@@ -367,7 +367,7 @@ impl<const D: usize> WallForces<D> {
         }
     }
 
-    /// Effect at touching nodes of the changes of the motion between two sweeps of a solve: `x` less `before` in displacements, times
+    /// Effect at touching nodes of the changes of the motion between two contact iterations of a solve: `x` less `before` in displacements, times
     /// `speed` \[1/s\] in velocities.
     pub(crate) fn sweep_change(
         &self,
@@ -394,7 +394,7 @@ impl<const D: usize> WallForces<D> {
         change
     }
 
-    /// The largest change of a friction coefficient along elements in contact for a change of velocities, four elements side by side.
+    /// Largest change of a friction coefficient along elements in contact for a change of velocities, four elements at a time.
     pub(crate) fn largest_friction_change_along(
         &self,
         contact: &ContactForces,
@@ -408,7 +408,7 @@ impl<const D: usize> WallForces<D> {
         })
     }
 
-    /// By how much friction coefficients change for a change of velocities, four nodes side by side: by the slope of the friction curve
+    /// Changes of friction coefficients for a change of velocities, four nodes at a time: by the slope of the friction curve
     /// at their sliding speed.
     #[inline(always)]
     pub(crate) fn friction_change(
@@ -431,7 +431,7 @@ impl<const D: usize> WallForces<D> {
         Four::select(touches, (slope * surface_speed(change, zero)).abs(), zero)
     }
 
-    /// Computes the action of the wall on four nodes by a law, and in `forces` what it adds to the others.
+    /// Computes the action of the wall on four nodes by a law, and adds it to the other forces in `forces`.
     #[inline(always)]
     fn push(
         &self,
@@ -444,7 +444,7 @@ impl<const D: usize> WallForces<D> {
     ) {
         let (site, u, v) = (&self.sites[group], x[U], x[V]);
         let radius_squared = u.mul_add(u, v * v);
-        // Most groups are far from the wall: their rates are not even looked at.
+        // Most groups are far from the wall: their rates are not read.
         if !radius_squared.greater_than(site.clearance * site.clearance).any() {
             if out.penetration.is_some() {
                 *out = GroupContact::none();
@@ -472,7 +472,7 @@ impl<const D: usize> WallForces<D> {
     }
 }
 
-/// Motion of four nodes as contact asks for it, from their displacements and the rate of each degree of freedom.
+/// Motion of four nodes for their contact, from their displacements and the rate of each degree of freedom.
 #[inline(always)]
 fn lateral_motion<const D: usize>(
     x: &[Four; D],

@@ -1,7 +1,7 @@
-//! The wall: normal contact, friction and its torque at all nodes and along elements, four side by side.
+//! The wall: normal contact, friction and its torque at all nodes and along elements, four at a time.
 //!
-//! The law is [`crate::force::contact`]. Its three effects share one evaluation: friction is a coefficient times the normal force, at the penetration and the
-//! sliding speed that the normal force is found with, and an implicit solve makes both agree with one motion.
+//! The law is [`crate::force::contact`]. Its three effects share one evaluation: friction is a coefficient times the normal force, at the same
+//! penetration and sliding speed as the normal force, and an implicit solve makes both agree with one motion.
 
 mod change;
 pub(crate) mod contact;

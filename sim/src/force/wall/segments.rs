@@ -1,4 +1,4 @@
-//! Contact along the elements of a string, four elements side by side.
+//! Contact along the elements of a string, four elements at a time.
 //!
 //! Element e joins the nodes e and e + 1, so that the elements of a group begin at the nodes of the group of the same number and end at those after
 //! each of them.
@@ -11,10 +11,10 @@ use crate::force::contact::{
 use crate::math::dof::{Dofs, THETA_X, THETA_Y, U, V};
 use crate::math::linalg::{Four, InverseBands, Lane, NodalField, next_lane};
 
-/// Elements as they meet the wall; empty if the nodes alone do.
+/// Contact data of elements; empty if the wall acts at the nodes alone.
 #[derive(Debug, Clone)]
 pub(crate) struct Segments<const D: usize> {
-    /// Elements that do not exist have a clearance that nothing reaches.
+    /// Groups of four elements; elements that do not exist have an unreachable clearance.
     groups: Vec<ContactSegment<Four>>,
     freedoms: Dofs<D>,
     /// Places of theta_x and theta_y in a node's values.
@@ -24,15 +24,15 @@ pub(crate) struct Segments<const D: usize> {
     rotation_speed: Four,
 }
 
-/// Loads of the wall along elements, as of one evaluation.
+/// Loads of the wall along elements in one evaluation.
 #[derive(Debug, Clone)]
 pub(crate) struct SegmentForces {
     groups: Vec<SegmentForce<Four>>,
-    /// Groups of which any element touches; the loads of the others mean nothing.
+    /// Groups with a touching element; the loads of the others are undefined.
     touches: Vec<bool>,
 }
 
-/// A law of the wall along four elements side by side: given their group and their motion it replaces their loads so far. False if none touches.
+/// A law of the wall along four elements at a time: replaces their loads, from their group and their motion. False if none touches.
 pub(crate) trait LawAlong:
     Fn(&ContactSegment<Four>, usize, &SegmentMotion<Four>, &mut SegmentForce<Four>) -> bool
 {
@@ -48,18 +48,18 @@ impl<F> LawAlong for F where
 pub(crate) struct SegmentPower {
     pub(crate) normal: Four,
     pub(crate) friction: Four,
-    /// \[N m\].
+    /// Sum of the torques \[N m\].
     pub(crate) torque: Four,
 }
 
 impl SegmentForces {
-    /// No contact of any of the elements between so many nodes.
+    /// Loads of elements that do not touch.
     pub(super) fn none<const D: usize>(segments: &Segments<D>) -> Self {
         let groups = segments.groups.len();
         Self { groups: vec![SegmentForce::none(); groups], touches: vec![false; groups] }
     }
 
-    /// The groups of elements of which any touches, with their numbers.
+    /// The groups of elements with a touching one, with their numbers.
     pub(crate) fn touching(&self) -> impl Iterator<Item = (usize, &SegmentForce<Four>)> {
         let groups = self.groups.iter().zip(&self.touches).enumerate();
         groups.filter(|(_, (_, touches))| **touches).map(|(group, (force, _))| (group, force))
@@ -71,7 +71,7 @@ impl SegmentForces {
         self.touches.copy_from_slice(&other.touches);
     }
 
-    /// Adds each node's share of the normal forces \[N\] to what `of` gives of four nodes side by side.
+    /// Adds each node's share of the normal forces \[N\] to the values that `of` selects from a group of four nodes.
     pub(super) fn add_normal_forces<T>(&self, nodes: &mut [T], of: impl Fn(&mut T) -> &mut Four) {
         for (group, force) in self.touching() {
             let [upper, lower] = force.ends;
@@ -119,7 +119,7 @@ impl<const D: usize> Segments<D> {
     pub(super) fn compliance(&self, inverse: &InverseBands<D>) -> Vec<SegmentCompliance<Four>> {
         let nodes = inverse.diagonal.len();
         let is_held = |node: usize, dof: usize| self.held.contains(&(node, dof));
-        // The entry of the inverse at degrees of freedom of both ends of an element, from 0 to 2 D - 1; none for what is held.
+        // The entry of the inverse at degrees of freedom of both ends of an element, from 0 to 2 D - 1; none if held.
         let entry = |element: usize, row: usize, column: usize| {
             let (row_node, column_node) = (element + row / D, element + column / D);
             let place = (row % D, column % D);
@@ -158,7 +158,7 @@ impl<const D: usize> Segments<D> {
         (0..self.groups.len()).map(of_group).collect()
     }
 
-    /// Loads of the wall by `law`, which is given the group, its elements' motion and the loads so far, into `out`, and added to `all`.
+    /// Writes the loads of the wall by `law`, from the group, its elements' motion and the loads so far, to `out`, and adds them to `all`.
     #[inline(always)]
     pub(super) fn add_forces(
         &self,
@@ -175,7 +175,7 @@ impl<const D: usize> Segments<D> {
         }
     }
 
-    /// Loads of the wall by `law` into `out`.
+    /// Writes the loads of the wall by `law` to `out`.
     pub(super) fn evaluate(
         &self,
         law: &impl LawAlong,
@@ -201,7 +201,7 @@ impl<const D: usize> Segments<D> {
         let segment = &self.groups[group];
         let planes = self.planes(group, &|group, dof| value(x, group, dof));
         let (force, touches) = (&mut out.groups[group], &mut out.touches[group]);
-        // Most elements are far from the wall: their rates are not even looked at.
+        // Most elements are far from the wall: their rates are not read.
         if !segment.may_touch(&planes) {
             *touches = false;
             return false;
@@ -253,8 +253,8 @@ impl<const D: usize> Segments<D> {
         power
     }
 
-    /// Changes between two iterations of a solve at elements that touch, as
-    /// [`WallForces::sweep_change`](super::WallForces::sweep_change) has them.
+    /// Changes between two iterations of a solve at touching elements, as in
+    /// [`WallForces::sweep_change`](super::WallForces::sweep_change).
     pub(super) fn sweep_change(
         &self,
         law: &ContactParameters<Four>,

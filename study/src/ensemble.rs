@@ -1,7 +1,7 @@
 //! Time up to which a history can be trusted, from runs of the same scenario whose starts almost agree.
 //!
 //! Impacts and sliding make neighbouring histories part. From then on neither their course nor the error of an
-//! integrator along it means anything; sizes, lines and counts do, with the spread that the members show.
+//! integrator along it has a meaning; sizes, lines and counts have one, with the spread of the members.
 
 use std::ops::Range;
 
@@ -10,11 +10,11 @@ use drillsweep_sim::solve::run::{Histories, Series};
 /// Distance at which two histories count as parted, relative to the size of the motion.
 pub(crate) const PARTED: f64 = 0.1;
 
-/// Samples that are compared at once.
+/// Samples compared at once.
 const BLOCK: usize = 4096;
 
 /// The time \[s\] at which two members' recorded histories have parted: their root mean square distance over the nodes
-/// exceeds a tenth of the root mean square motion of the first about its mean. Absent where they stay together.
+/// exceeds a tenth of the root mean square motion of the first about its mean. Absent if they stay together.
 ///
 /// # Errors
 /// The histories cannot be read.
@@ -95,11 +95,11 @@ fn squared_distances<H: Histories>(
     Ok(squares)
 }
 
-/// Mean and standard deviation of a statistic over the members; nothing without any.
+/// Mean and standard deviation of a statistic over the members; `None` without members.
 pub fn spread(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    // One member has no spread; more have that of a sample.
+    // One member has no spread; more have the spread of a sample.
     let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
     (!values.is_empty()).then(|| (mean, (squares / (count - 1.0).max(1.0)).sqrt()))
 }

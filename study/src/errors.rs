@@ -1,4 +1,4 @@
-//! Errors of a result side by side: parts of steps, mesh and sampling in the statistics that are read, and all of them together.
+//! Errors of a result: parts of steps, mesh and sampling in the reported statistics, and their sum.
 
 use std::fmt;
 
@@ -11,26 +11,26 @@ use crate::summary::{OrbitSummary, TransientSummary};
 use drillsweep_sim::solve::modes::UndampedTorsion;
 use drillsweep_sim::solve::run::{DISTURBANCE, MotionRegime};
 
-/// Errors of a result, relative to the statistics of the recorded orbits, the worst node each.
+/// Errors of a result, relative to the statistics of the recorded orbits, each of the worst node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct ResultErrors {
-    /// Of the steps.
+    /// Error of the steps.
     pub time: TimeError,
-    /// Of the mesh.
+    /// Error of the mesh.
     pub mesh: MeshEstimate,
-    /// Of the window: the run has not settled, or its statistics scatter.
+    /// Error of the window: the run has not settled, or its statistics scatter.
     #[serde(default)]
     pub sampling: SamplingError,
-    /// Error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
+    /// Bound of the accuracy on the error of orbit size by steps, mesh and sampling together; absent if the accuracy sets none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promised: Option<f64>,
-    /// Error of orbit size by steps, mesh and sampling together, the root of the sum of their squares, as of independent parts (JCGM 100:2008); absent if
-    /// one of them is not known.
+    /// Error of orbit size by steps, mesh and sampling together, the root of the sum of their squares, as of independent parts (JCGM 100:2008);
+    /// absent if one of them is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whole: Option<f64>,
-    /// Between runs that start next to each other.
+    /// Spread between runs that start next to each other.
     pub spread: SpreadError,
-    /// By how much the scenario amplifies a disturbance over the orbit window; absent where no twin was run.
+    /// Amplification of a disturbance by the scenario over the orbit window; absent if no twin was run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensitivity: Option<Sensitivity>,
     /// True if the run's histories part from those of its twin, so that their error is not known.
@@ -40,20 +40,20 @@ pub struct ResultErrors {
 
 /// The error of the steps of a run in orbit size and in the standard deviation of the radius, relative to them.
 ///
-/// Each step leaves an error, which the embedded method estimates, and the scene amplifies it until the end of the run as it amplifies any
+/// Each step leaves an error, which the embedded method estimates, and the scenario amplifies it until the end of the run as any
 /// other disturbance. The amplification is measured by the distance from a twin that starts a micrometre away at the start of the orbit window,
-/// or from the members of an ensemble. Scenarios differ in it by three orders of magnitude, so an estimate without either is conditional.
+/// or from the members of an ensemble. It varies between scenarios by three orders of magnitude, so an estimate without either is conditional.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum TimeError {
-    /// Estimated with what a twin or an ensemble shows of the scenario.
+    /// Estimated with the amplification that a twin or an ensemble shows.
     Estimated {
         /// Relative error, the worst node.
         statistics: f64,
-        /// By how much the scene amplifies a disturbance of the start at that node.
+        /// Amplification by the scenario of a disturbance of the start at that node.
         amplification: f64,
     },
-    /// Estimated for a scene that amplifies disturbances no more than most: one run does not show it.
+    /// Estimated under the condition that the scenario amplifies disturbances no more than most: one run does not show it.
     Conditional {
         /// Relative error, the worst node, on that condition.
         statistics: f64,
@@ -71,7 +71,7 @@ pub enum TimeError {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum SamplingError {
-    /// Largest relative difference between the windows that agree of regular motion, half width of the confidence interval of irregular.
+    /// Largest relative difference between the windows that agree for regular motion; half width of the confidence interval for irregular motion.
     Estimated {
         /// Relative error, the worst node.
         orbit_size: f64,
@@ -103,7 +103,7 @@ pub enum SpreadError {
     },
 }
 
-/// A member of an ensemble beside the undisturbed run.
+/// A member of an ensemble other than the undisturbed run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherMember {
     /// Its summary.
@@ -112,18 +112,18 @@ pub struct OtherMember {
     pub distances: Vec<f64>,
 }
 
-/// Error of a statistic over the estimated error of the history, where the scene keeps a disturbance of the start as it is. With it, and
-/// where members stay together, the estimate covers nearly all scenes of `benches/error_estimate.rs`, and is some six times too large in the
-/// median. (The error of the history is a mean over all nodes, so the estimate is ten times too large where a recorded node hardly moves;
-/// related to the root mean square of all recorded orbits it is not, but misses nine runs more of 69.) With the amplification of a twin the whole stated
-/// error of eleven settled runs of calm scenes is 1.0 to 18 times what is found (docs/accuracy.md); no sensitive scene was compared.
+/// Error of a statistic over the estimated error of the history, if the scenario neither amplifies nor damps a disturbance of the start. With it, and
+/// if members stay together, the estimate covers nearly all scenarios of `benches/error_estimate.rs`, and is some six times too large in the
+/// median. (The error of the history is a mean over all nodes, so the estimate is ten times too large if a recorded node hardly moves;
+/// relative to the root mean square of all recorded orbits it is not, but misses nine runs more of 69.) With the amplification of a twin the whole
+/// stated error of eleven settled runs of calm scenarios is 1.0 to 18 times the true one (docs/accuracy.md); no sensitive scenario was compared.
 const SHARE_OF_HISTORY: f64 = 0.2;
 
-/// Amplification that is taken if none was measured, and that counts at least of an ensemble from the start of the run. Most scenes stay below it over
-/// half a minute, those that hardly damp amplify by hundreds.
+/// Amplification assumed if none was measured, and the least amplification by an ensemble from the start of the run. Most scenarios stay below it
+/// over half a minute; those that hardly damp amplify by hundreds.
 const USUAL_AMPLIFICATION: f64 = 5.0;
 
-/// Amplification by a twin that counts at least: an error of a step is not taken to die out.
+/// Least amplification by a twin: an error of a step is not taken to die out.
 const LEAST_AMPLIFICATION: f64 = 1.0;
 
 /// Largest residual of the energy ledger, as a fraction of its bound, of a run whose error is estimated: usual runs have less than a hundredth.
@@ -133,7 +133,7 @@ const SOUND_RESIDUAL: f64 = 0.05;
 const LARGEST_ESTIMATE: f64 = 0.5;
 
 impl ResultErrors {
-    /// The errors of a run, given its ensemble, its twin, the torsion that friction feeds, the mesh's part and the promise for orbit size.
+    /// The errors of a run, from its ensemble, its twin, the torsion that friction excites, the mesh's part and the accuracy's bound for orbit size.
     pub fn new(
         run: &TransientSummary,
         others: &[OtherMember],
@@ -162,7 +162,7 @@ impl ResultErrors {
 }
 
 impl TimeError {
-    /// The error of a run, given its ensemble, its twin and the torsion that friction feeds.
+    /// The error of a run, from its ensemble, its twin and the torsion that friction excites.
     pub fn new(
         run: &TransientSummary,
         others: &[OtherMember],
@@ -231,7 +231,7 @@ impl TimeError {
         TimeError::Estimated { statistics, amplification }
     }
 
-    /// The estimate where its condition is known to hold; absent elsewhere.
+    /// The estimate if it is unconditional; absent otherwise.
     pub fn unconditional(&self) -> Option<f64> {
         match self {
             TimeError::Estimated { statistics, .. } => Some(*statistics),
@@ -239,7 +239,7 @@ impl TimeError {
         }
     }
 
-    /// The estimate, conditional or not; absent where it is not known.
+    /// The estimate, conditional or not; absent if it is not known.
     pub fn statistics(&self) -> Option<f64> {
         match self {
             TimeError::Estimated { statistics, .. } | TimeError::Conditional { statistics, .. } => {
@@ -311,7 +311,7 @@ impl SpreadError {
         }
     }
 
-    /// Standard deviation of orbit size over its mean; absent where it is not known.
+    /// Standard deviation of orbit size over its mean; absent if it is not known.
     pub fn orbit_size(&self) -> Option<f64> {
         match self {
             SpreadError::Measured { orbit_size, .. } => Some(*orbit_size),
@@ -320,7 +320,7 @@ impl SpreadError {
     }
 }
 
-/// One line: promised, stated, and the parts.
+/// One line: the bound, the stated error, and its parts.
 impl fmt::Display for ResultErrors {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |part: Option<f64>| match part {

@@ -1,9 +1,9 @@
-//! Does a finer time step confirm a result? A run is compared with another of the same scenario and a finer step, in their statistics.
+//! Check of a result by a finer time step: the statistics of a run are compared with those of another run of the same scenario with a finer step.
 //!
-//! A run can be finite, its ledger closed, and wrong. If statistics change by more than the accuracy promises when the step is refined, the run
-//! is not to be trusted: its steps are too long for the scene, or the scene is too sensitive for a window of this length.
-//! A third run distinguishes the two, with the steps of the first and a start a micrometre apart from it. Runs of one method share
-//! its bias, so agreement is no proof; what two methods of different kind reach is the subject of the [cost study](super::cost).
+//! A run can be finite, its ledger closed, and wrong. If statistics change by more than the accuracy allows when the step is refined, the run
+//! is not to be trusted: its steps are too long for the scenario, or the scenario is too sensitive for a window of this length.
+//! A third run distinguishes the two, with the steps of the first and a start a micrometre away from it. Runs of one method share
+//! its bias, so agreement is no proof; the [cost study](super::cost) compares two independent methods.
 
 use drillsweep_scenario::{
     Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, Scenario, TimeStepping,
@@ -19,18 +19,18 @@ use drillsweep_sim::solve::step::SMALLEST_MOTION;
 /// Verdict of a finer step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// The same, within what is promised; with the difference that comes nearest to that.
+    /// Agreement within the allowed difference; with the difference that comes nearest to it.
     Agrees(Difference),
-    /// Otherwise; with the difference that is furthest beyond what is promised.
+    /// Disagreement; with the difference that exceeds the allowed one most.
     Differs(Difference),
-    /// Otherwise, and so does a start a micrometre beside, by as much: the scene is too sensitive for its window.
+    /// Disagreement, also with a run whose start is a micrometre away, by as much: the scenario is too sensitive for its window.
     Sensitive {
-        /// The difference from the finer run that is furthest beyond what is promised.
+        /// The difference from the finer run that exceeds the allowed one most.
         finer: Difference,
-        /// The one from the run that starts beside.
+        /// The difference from the run with the other start.
         neighbour: Difference,
     },
-    /// Nothing that is read moves in either run.
+    /// All compared statistics are at rest in both runs.
     AtRest,
     /// The finer run has no result, for this reason.
     NoResult(String),
@@ -43,25 +43,25 @@ pub enum Verdict {
 pub struct Difference {
     /// The statistic.
     pub quantity: Quantity,
-    /// Measured depth of the node \[m\]; absent where the value is the whole string's.
+    /// Measured depth of the node \[m\]; absent if the value is the whole string's.
     pub measured_depth: Option<f64>,
-    /// By the run and by the finer one: lengths \[m\], forces \[N\], speeds \[rad/s\].
+    /// Values of the run and of the finer one: lengths \[m\], forces \[N\], speeds \[rad/s\].
     pub values: [f64; 2],
-    /// Their difference over the finer run's value, or over what counts as rest where that is more.
+    /// Their difference over the finer run's value, or over the value that counts as rest if that is larger.
     pub relative: f64,
-    /// Largest difference that is promised.
+    /// Largest difference that the accuracy allows.
     pub allowed: f64,
 }
 
 impl Difference {
-    /// The difference in parts of what is promised.
+    /// The difference over the allowed one.
     pub fn share(&self) -> f64 {
         self.relative / self.allowed
     }
 }
 
-/// Promise to which an accuracy is held here: its own; of `esdirk4` with a tolerance, that of this tolerance elsewhere; and of other
-/// steps, which promise nothing, that of `standard`.
+/// Bounds for an accuracy in this check: its own; for `esdirk4` with a tolerance, those of this tolerance; and for other
+/// steps, which have no bounds, those of `standard`.
 pub fn asked_of(accuracy: &Accuracy) -> Promise {
     let stepping = accuracy.time_stepping();
     let tolerance = stepping.tolerance.filter(|_| stepping.integrator == Integrator::Esdirk4);
@@ -73,13 +73,14 @@ pub fn asked_of(accuracy: &Accuracy) -> Promise {
         .unwrap_or(Promise { orbit_size: standard, radius_deviation: standard })
 }
 
-/// Differences count as equally large up to this ratio: single runs of a sensitive scene are draws, whose differences scatter.
+/// Ratio up to which differences count as equally large: single runs of a sensitive scenario are draws, whose differences scatter.
 const SAME_SIZE: f64 = 5.0;
 
-/// Runs that start a micrometre away, at most, before a difference counts as one of the steps: of a single one the statistics may agree by chance.
+/// Largest number of runs from a start a micrometre away before a difference counts as one of the steps: the statistics of a single one may agree by
+/// chance.
 const NEIGHBOURS: u32 = 3;
 
-/// Runs a model, of which `own` is what its first run left, with a [finer step](TimeStepping::finer) and compares.
+/// Runs a model with a [finer step](TimeStepping::finer) and compares the run with its first one, whose measure is `own`.
 pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Control) -> Verdict {
     let stepping = model.scenario.accuracy.time_stepping();
     let promise = asked_of(&model.scenario.accuracy);
@@ -89,7 +90,7 @@ pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Co
             Ok(None) => Verdict::Cancelled,
             Err(reason) => Verdict::NoResult(reason),
         };
-    // Half of the step that was made: contacts may have cut the one that was asked for.
+    // Half of the step that was made: contacts may have cut the requested one.
     let made = match stepping.integrator {
         Integrator::Rk4 => stepping.step,
         Integrator::Esdirk4 | Integrator::GeneralizedAlpha => stepping.step.min(own.longest_step),
@@ -112,7 +113,7 @@ pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Co
     }
 }
 
-/// Measure of a run of the model with another stepping, as a member of its ensemble; nothing if it was cancelled.
+/// Measure of a run of the model with another stepping, as a member of its ensemble; `None` if it was cancelled.
 fn measure(
     model: &Model,
     equilibrium: &Equilibrium,
@@ -120,7 +121,7 @@ fn measure(
     member: u32,
     control: &Control,
 ) -> Result<Option<Measure>, String> {
-    // Neither the model nor its equilibrium knows of time.
+    // Neither the model nor its equilibrium depends on time.
     let mut model = model.clone();
     model.scenario.accuracy = Accuracy::Explicit(stepping);
     let run = Transient::member(&model, equilibrium, member).and_then(|transient| transient.run(control));
@@ -161,8 +162,8 @@ fn compare(own: &Measure, finer: &Measure, scenario: &Scenario, promise: Promise
     }
 }
 
-/// The size to which a difference is related at least. Of lengths it is the motion that steps are chosen for at least. Of twist it is the
-/// surface speed to which friction refers: steps hold a sliding speed to a part of that, and less of it does nothing to the string.
+/// Least size for a relative difference. For lengths it is at least the motion for which steps are chosen. For twist it is the
+/// reference speed of friction at the surface: steps hold a sliding speed to a part of that, and a smaller one has no effect on the string.
 fn rest(quantity: Quantity, scenario: &Scenario) -> f64 {
     let hole_radius = 0.5 * scenario.well.hole_diameter;
     match quantity {
@@ -223,7 +224,7 @@ mod tests {
         assert_eq!(finer, TimeStepping::adaptive(0.02));
         let fixed = TimeStepping::fixed(Integrator::GeneralizedAlpha, 1e-3);
         assert_eq!(fixed.finer(), TimeStepping { step: 5e-4, ..fixed });
-        // No tolerance is below what can be asked for.
+        // No tolerance is below the smallest admissible one.
         assert_eq!(TimeStepping::adaptive(1e-4).finer().tolerance, Some(1e-4));
     }
 }

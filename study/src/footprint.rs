@@ -1,4 +1,4 @@
-//! Memory and storage that a scenario takes, without running it.
+//! Memory and storage of a scenario, without running it.
 
 use drillsweep_scenario::{CostStudy, Outputs, Scenario, TimeWindow};
 use serde::Serialize;
@@ -20,42 +20,42 @@ const PER_NODE: u64 = 40_000;
 const PER_NODE_OF_FINER_MESHES: u64 = 70_000;
 
 /// Bytes of a sample of a window while its spectrum is computed: the motion, its transform in and out, the weights, the amplitudes
-/// and their frequencies, and what is stored of them.
+/// and their frequencies, and their stored copies.
 const PER_WINDOW_SAMPLE: u64 = 160;
 
-/// Bytes of what a table's rows are gathered in before they are written: a row group, and what it is written by.
+/// Bytes of the buffer in which a table's rows are gathered before they are written: a row group, and the buffers of its writer.
 const LARGEST_ROW_GROUP: u64 = 48 << 20;
 
 /// Bytes of a table's description for each column of each row group.
 const PER_COLUMN_CHUNK: u64 = 1_500;
 
-/// Rows of a row group at most.
+/// Largest number of rows in a row group.
 const ROW_GROUP: u64 = 10_000;
 
-/// Columns of a history's table for each node, where torsion is solved for: the series, and the rotation speed that the rate of twist
-/// makes.
+/// Columns of a history's table for each node, if torsion is solved for: the series, and the rotation speed from the rate of
+/// twist.
 const HISTORY_COLUMNS: u64 = Series::ALL.len() as u64 + 1;
 
 /// Columns of the bit if it is recorded with the nodes: rotation speed and torque.
 const BIT_COLUMNS: u64 = 2;
 
-/// Rows of the table `course` a second at most.
+/// Largest number of rows of the table `course` a second.
 const COURSE_TABLE_HZ: f64 = 20.0;
 
 /// Memory and storage of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Footprint {
-    /// Memory that the point takes at most, about \[bytes\], of a cost study for each core that its worker uses; the worker's program
+    /// Largest memory of the point, about \[bytes\]; in a cost study, for each core that its worker uses. The worker's program
     /// itself takes some 30 MB more.
     pub memory_bytes: u64,
-    /// Its tables before they are compressed \[bytes\]; stored they usually take half of that, and a string at rest nearly nothing.
+    /// Size of its tables before compression \[bytes\]; stored they usually take half of that, and a string at rest nearly nothing.
     pub table_bytes: u64,
-    /// Of that its snapshots, `recording.snapshots` \[bytes\]; stored they usually take two fifths of it.
+    /// Part of its snapshots, `recording.snapshots` \[bytes\]; stored they usually take two fifths of it.
     pub snapshot_bytes: u64,
 }
 
 impl Footprint {
-    /// Of a scenario.
+    /// The footprint of a scenario.
     ///
     /// # Errors
     /// The scenario has no model.
@@ -83,10 +83,10 @@ impl Footprint {
 /// Counts of a run that grow with its duration.
 struct Recorded {
     nodes: u64,
-    /// Series of the bit, where it is recorded beside them.
+    /// Series of the bit, if it is recorded in addition to the nodes.
     of_bit: u64,
     samples: u64,
-    /// Samples whose histories are kept where nothing else is asked for.
+    /// Samples whose histories are kept if no other output is requested.
     kept_samples: u64,
     /// Samples of the motion by which the run is judged.
     course_samples: u64,
@@ -134,7 +134,7 @@ impl Recorded {
         }
     }
 
-    /// Bytes of memory at most.
+    /// Largest number of bytes of memory.
     fn memory(&self) -> u64 {
         let of_bit = self.of_bit / BIT_COLUMNS * Series::ALL.len() as u64;
         let sample = (self.nodes * Series::ALL.len() as u64 + of_bit) * size_of::<f64>() as u64;
@@ -143,14 +143,14 @@ impl Recorded {
         let columns = 1 + self.nodes * HISTORY_COLUMNS + self.of_bit;
         let row_groups = (self.samples / ROW_GROUP).max(self.samples * sample / (2 * LARGEST_ROW_GROUP)) + 1;
         let window = if self.nodes > 0 { PER_WINDOW_SAMPLE * self.longest_window } else { 0 };
-        // The rows are there once as they are made and once as columns.
+        // Rows take memory twice: as they are made and as columns.
         let ledger = 2 * self.ledger_rows * size_of::<EnergyRow>() as u64;
-        // Twice, while one that was suspended is read.
+        // Twice, since a suspended run is read back.
         let course = 2 * (2 * self.nodes + 1) * self.course_samples * size_of::<f64>() as u64;
         course + 2 * block + window.max(row_group + columns * row_groups * PER_COLUMN_CHUNK) + ledger
     }
 
-    /// Bytes that the runs of a cost study take beside that: the one under way, and the lateral motion of what is kept.
+    /// Additional bytes for the runs of a cost study: the current run, and the lateral motion of those that are kept.
     fn study_bytes(&self, study: &CostStudy) -> u64 {
         let double = size_of::<f64>() as u64;
         let whole = self.nodes * self.samples * Series::ALL.len() as u64 * double;
@@ -174,19 +174,19 @@ impl PlannedSnapshots {
         Self { rows: count * model.node_count() as u64, series: SnapshotSeries::of(model).len() as u64 }
     }
 
-    /// Time, node, and the series in single precision.
+    /// Bytes of the table: time, node, and the series in single precision.
     fn table_bytes(&self) -> u64 {
         self.rows * (16 + 4 * self.series)
     }
 
-    /// Bytes of memory of the block that a run gathers, and of the bytes that it becomes.
+    /// Bytes of memory of the block that a run gathers, and of its encoded bytes.
     fn memory_of_blocks(&self) -> u64 {
         2 * SNAPSHOT_BLOCK_BYTES.min(4 * self.rows * self.series)
     }
 
     /// Bytes of memory while the table is written.
     fn memory_of_table(&self) -> u64 {
-        /// Of a row as it is read back and made a row group.
+        /// Bytes of a row that is read back and put in a row group.
         const PER_ROW: u64 = 200;
         let columns = (2 + self.series) * PER_COLUMN_CHUNK;
         PER_ROW * ROW_GROUP.min(self.rows) + (self.rows / ROW_GROUP + 1) * columns

@@ -1,6 +1,6 @@
 //! Evaluation of runs: plans before them, summaries with stated errors after them, studies of several.
 //!
-//! Pure code over the [simulation](drillsweep_sim), without files, clocks or threads: a caller runs what is planned here, and measures its time.
+//! Pure code over the [simulation](drillsweep_sim), without files, clocks or threads: a caller runs the planned runs, and measures their time.
 
 pub mod cost;
 pub mod ensemble;

@@ -1,8 +1,8 @@
 //! Part of the mesh in a result: equilibria on meshes two and four times as fine, and small motions about them.
 //!
-//! The equilibrium has the same elements, the same wall and the same hydraulics as the run in time and costs next to nothing beside it. The orbits of a run
-//! have two drives, the unbalance and torsion that friction feeds; their linear responses about the equilibrium show how much of an orbit each makes, and
-//! how much of that the mesh is off by.
+//! The equilibrium has the same elements, the same wall and the same hydraulics as the run in time and costs little compared with it. The orbits of a
+//! run have two drives, the unbalance and torsion that friction excites; their linear responses about the equilibrium show the part of each in an
+//! orbit, and the error of the mesh in that part.
 
 use std::fmt;
 
@@ -20,10 +20,10 @@ use drillsweep_sim::string::beam::Shape;
 /// Highest frequency of a torsional mode that drives lateral motion \[Hz\].
 const HIGHEST_DRIVE_HZ: f64 = 30.0;
 
-/// Larger relative errors of orbit sizes are not stated: responses that differ so much are not those of small motions about one equilibrium.
+/// Largest relative error of orbit size that is stated: responses that differ more are not those of small motions about one equilibrium.
 const LARGEST_ORBIT_ERROR: f64 = 0.5;
 
-/// Strings of more elements are not refined: their equilibria take seconds.
+/// Largest number of elements of a string that is refined: larger equilibria take seconds.
 pub(super) const MOST_ELEMENTS: usize = 1500;
 
 /// The mesh's part of the error of the equilibrium.
@@ -42,7 +42,7 @@ pub enum MeshEstimate {
 /// Estimated errors of an equilibrium for its mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MeshErrors {
-    /// Static distance from the hole's axis, the largest relative error of the recorded nodes; absent where they lie on the axis or none
+    /// Static distance from the hole's axis, the largest relative error of the recorded nodes; absent if they lie on the axis or none
     /// is recorded.
     pub mean_radius: Option<f64>,
     /// Static position of the worst node, over the hole's radius.
@@ -61,7 +61,7 @@ impl MeshEstimate {
         Self::with_orbits(model, equilibrium, &[])
     }
 
-    /// The same with the error of the `orbits` that a run about it has shown. Up to four responses more, on the own mesh and the finest.
+    /// The same with the error of the `orbits` of a run about the equilibrium. It takes up to four more responses, on the own mesh and the finest.
     pub fn with_orbits(model: &Model, equilibrium: &Equilibrium, orbits: &[OrbitSummary]) -> Self {
         let unknown = |reason: &str| MeshEstimate::Unknown { reason: reason.to_owned() };
         let touches = equilibrium.normal_force.iter().any(|&force| force > 0.0);
@@ -121,7 +121,7 @@ impl MeshEstimate {
         })
     }
 
-    /// The estimate; `None` where the error is not known.
+    /// The estimate; `None` if the error is not known.
     pub fn estimate(&self) -> Option<&MeshErrors> {
         match self {
             MeshEstimate::Estimated(estimate) => Some(estimate),
@@ -158,7 +158,7 @@ impl fmt::Display for MeshEstimate {
 }
 
 /// The error of the first of three values, of which the second is from a mesh twice as fine and the third from one four times as fine: its
-/// distance from the third, and what that still lacks by the order that the three show, taken as 1 to 2 (the law of the wall has kinks).
+/// distance from the third, and the remaining error of the third by the observed order, taken as 1 to 2 (the law of the wall has kinks).
 fn error<T: Copy>([own, half, quarter]: [T; 3], distance: impl Fn(T, T) -> f64) -> f64 {
     let (first, second) = (distance(own, half), distance(half, quarter));
     let order = if second > 0.0 { (first / second).log2().clamp(1.0, 2.0) } else { 2.0 };
@@ -175,9 +175,9 @@ fn on_a_mesh(scenario: &Scenario, factor: f64) -> Option<(Model, Equilibrium)> {
 
 /// Responses to the two drives of lateral motion about an equilibrium.
 struct Drives {
-    /// To the unbalance, at the speed of rotation; absent without one.
+    /// Response to the unbalance, at the speed of rotation; absent without unbalance.
     unbalance: Option<Amplitudes>,
-    /// To torsion that friction feeds, for one radian at the bit; absent if none grows.
+    /// Response to torsion that friction excites, for one radian at the bit; absent if none grows.
     torsion: Option<Amplitudes>,
     /// Frequency of that torsion \[Hz\].
     torsion_hz: Option<f64>,
@@ -190,7 +190,7 @@ impl Drives {
         Self::at(model, equilibrium, fastest.map(|mode| mode.frequency_hz))
     }
 
-    /// With torsion at a given frequency \[Hz\]; `None` without any drive.
+    /// The responses with torsion at a given frequency \[Hz\]; `None` without any drive.
     fn at(model: &Model, equilibrium: &Equilibrium, torsion_hz: Option<f64>) -> Option<Self> {
         let rotation_hz = model.rotation_speed.abs() / std::f64::consts::TAU;
         let unbalance_hz = model.effects.unbalance.then_some(rotation_hz);
@@ -208,8 +208,8 @@ impl Drives {
         })
     }
 
-    /// Relative error of the size of an orbit on this mesh, the finest being right: of what the unbalance makes of it, and of the rest, which torsion
-    /// makes if it grows; absent if neither response is known, or nothing moves.
+    /// Relative error of the size of an orbit on this mesh, with the finest as reference: of the part that the unbalance drives, and of the rest,
+    /// which torsion drives if it grows; absent if neither response is known, or nothing moves.
     fn error(&self, finest: &Drives, orbit: &OrbitSummary) -> Option<f64> {
         let size = orbit.orbit_radius_rms;
         let sizes = |of: fn(&Drives) -> Option<&Amplitudes>| {
@@ -267,7 +267,7 @@ impl Deflection {
         }
     }
 
-    /// (u, v) at a depth, between nodes as the beam deflects.
+    /// (u, v) at a depth, between nodes by the deflection of the beam.
     fn at(&self, depth: f64) -> [f64; 2] {
         let below = self.nodes.partition_point(|(node, _)| *node < depth).clamp(1, self.nodes.len() - 1);
         let (top, bottom) = (self.nodes[below - 1].0, self.nodes[below].0);
@@ -315,7 +315,7 @@ mod tests {
         // 1 + h and 1 + h^2 with h = 0.1, 0.05, 0.025.
         assert!((scalar([1.1, 1.05, 1.025]) - 0.1).abs() < 1e-12);
         assert!((scalar([1.01, 1.0025, 1.000_625]) - 0.01).abs() < 1e-12);
-        // What does not fall, or not yet, counts as of first order.
+        // An error that does not fall, or not yet, counts as of first order.
         assert!((scalar([1.0, 1.0, 1.01]) - 0.02).abs() < 1e-12);
         assert_eq!(scalar([1.0, 1.0, 1.0]), 0.0);
     }
@@ -329,7 +329,7 @@ mod tests {
         let mut scenario = preset("paper-200m").unwrap();
         let MeshEstimate::Unknown { reason } = estimate(&scenario) else { panic!("is not known") };
         assert!(reason.contains("per_length"));
-        // Where nothing touches there is no such wall.
+        // Without contact there is no such wall.
         scenario = preset("hard/on-axis").unwrap();
         scenario.effects.set(Effect::Contact, Switch::On);
         assert_eq!(estimate(&scenario).estimate().unwrap().static_position, 0.0);

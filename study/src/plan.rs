@@ -1,4 +1,4 @@
-//! Forecast of a scenario, without running it: the effects in play and why, the size of the problem, steps and
+//! Forecast of a scenario, without running it: the active effects with their reasons, the size of the problem, steps and
 //! processor time at each accuracy.
 
 use drillsweep_scenario::{
@@ -22,7 +22,7 @@ use drillsweep_sim::string::StringMesh;
 /// The plan of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Plan {
-    /// Every effect, whether it takes part and why.
+    /// Decision about every effect, with its reason.
     pub effects: Vec<EffectDecision>,
     /// Elements of the string at its own accuracy.
     pub elements: usize,
@@ -32,59 +32,59 @@ pub struct Plan {
     pub longest_element: f64,
     /// Nodes of the string.
     pub nodes: usize,
-    /// Degrees of freedom of a node that the run in time solves for; 0 where there is no run in time.
+    /// Degrees of freedom of a node that the run in time solves for; 0 without a run in time.
     pub degrees_of_freedom: usize,
-    /// Simulated time of all runs of the point together \[s\], without a cost study: the most that they may take where the window is
-    /// settled. 0 where there is no run in time.
+    /// Simulated time of all runs of the point together \[s\], without a cost study: the most that they may take if the window is
+    /// settled. 0 without a run in time.
     pub simulated_time: f64,
-    /// The least that they can take \[s\]: where the window is settled, runs end once their motion has.
+    /// Least simulated time of these runs \[s\]: if the window is settled, runs end once their motion has settled.
     pub shortest_simulated_time: f64,
     /// Memory and storage.
     pub footprint: Footprint,
-    /// Processor time that the equilibrium with its hydraulics is expected to take \[s\]; absent where the machine's speed
+    /// Expected processor time of the equilibrium with its hydraulics \[s\]; absent if the machine's speed
     /// is not known.
     pub statics_cpu_time: Option<f64>,
-    /// The scenario's own accuracy first, then the named ones, without a cost study; none where there is no run in time.
+    /// The scenario's own accuracy first, then the named ones, without a cost study; none without a run in time.
     pub accuracies: Vec<PlannedAccuracy>,
-    /// Study that is run in place of that if the scenario has a `cost_study`; absent also if the study has no runs because the scenario
+    /// Study that replaces the run if the scenario has a `cost_study`; absent also if the study has no runs because the scenario
     /// has no equilibrium.
     pub study: Option<PlannedStudy>,
     #[serde(skip)]
     is_study: bool,
-    /// The torsional modes that velocity-weakening friction feeds, about the equilibrium; absent where [`Plan::with_equilibrium`] was not asked,
+    /// The torsional modes that velocity-weakening friction excites, about the equilibrium; absent if [`Plan::with_equilibrium`] was not called,
     /// there is no run in time, twist takes no part or friction does not turn the string.
     pub undamped_torsion: Option<UndampedTorsion>,
     /// Torque at the top \[N m\] at break-away, friction mu_s at every node that touches; absent as `mesh_error`, or if that equilibrium was
     /// not found.
     pub torque_top_break_away: Option<f64>,
-    /// Torque at the top \[N m\] of the rotating string, friction mu at the sliding speed of each node; absent likewise.
+    /// Torque at the top \[N m\] of the rotating string, friction mu at the sliding speed of each node; absent as `torque_top_break_away`.
     pub torque_top_rotating: Option<f64>,
-    /// The mesh's part of the error of the equilibrium; absent where [`Plan::with_equilibrium`] was not asked or there is none.
+    /// The mesh's part of the error of the equilibrium; absent if [`Plan::with_equilibrium`] was not called or there is no equilibrium.
     pub mesh_error: Option<MeshEstimate>,
-    /// Properties of the equilibrium that can be simulated but are probably not meant, in words.
+    /// Warnings, in words, of properties of the equilibrium that can be simulated but are probably not meant.
     pub warnings: Vec<String>,
 }
 
 /// Size and cost of one accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedAccuracy {
-    /// `draft`, `standard`, `reference`, `tolerance` where one was given, or `explicit` where integrator and step were given in full.
+    /// `draft`, `standard`, `reference`, `tolerance` if one was given, or `explicit` if integrator and step were given in full.
     pub name: String,
     /// Elements of its mesh: `auto` follows the accuracy.
     pub elements: usize,
     /// Method.
     pub integrator: Integrator,
-    /// Step \[s\]; the longest one where the step adapts itself.
+    /// Step \[s\]; the longest one if the step adapts itself.
     pub step: f64,
-    /// Steps of all runs of the point together, the most where the window is settled; an estimate where the step adapts itself, and
+    /// Steps of all runs of the point together, the most if the window is settled; an estimate if the step adapts itself, and
     /// absent for `rk4` with a tolerance.
     pub steps: Option<u64>,
-    /// The fewest, as `steps`.
+    /// Least number of steps, as `steps`.
     pub fewest_steps: Option<u64>,
-    /// Processor time that the whole point is expected to take on one core \[s\], equilibrium and twin included, the most where the window is
-    /// settled; absent where the machine's speed is not known or steps are.
+    /// Expected processor time of the whole point on one core \[s\], equilibrium and twin included, the most if the window is
+    /// settled; absent if the machine's speed is not known or the steps are not.
     pub cpu_time: Option<f64>,
-    /// The least, as `cpu_time` \[s\].
+    /// Least processor time, as `cpu_time` \[s\].
     pub least_cpu_time: Option<f64>,
 }
 
@@ -95,39 +95,39 @@ pub struct PlannedStudy {
     pub runs: u64,
     /// Their simulated time together \[s\].
     pub simulated_time: f64,
-    /// Processor time that they are expected to take on one core \[s\], without those that `lines_not_known` counts; absent where the
+    /// Expected processor time of these runs on one core \[s\], without the rows that `lines_not_known` counts; absent if the
     /// machine's speed is not known.
     pub cpu_time: Option<f64>,
-    /// Lines of the study whose time is not known beforehand: `rk4` with a tolerance.
+    /// Rows of the study whose time is not known beforehand: `rk4` with a tolerance.
     pub lines_not_known: u64,
 }
 
 /// Speed of a machine, in processor seconds, measured by [`calibration_runs`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct MachineSpeed {
-    /// An equilibrium with its hydraulics, for each node \[s\].
+    /// Time of an equilibrium with its hydraulics, for each node \[s\].
     pub statics_per_node: f64,
     /// Time of a run before its first step (matrices, stability of the step, factors), by the methods below, for each node \[s\].
     pub start_per_node: [f64; 4],
-    /// Steps of generalized-alpha, ESDIRK4 with two contact iterations, ESDIRK4 with sweeps until they have converged, and RK4: for each
-    /// node of the 200 m case \[s\], with 4, 5 and 6 degrees of freedom.
+    /// Time of a step of generalized-alpha, ESDIRK4 with two contact iterations, ESDIRK4 with contact iterations until convergence, and RK4: for each
+    /// node of the 200 m string \[s\], with 4, 5 and 6 degrees of freedom.
     pub step_per_node: [[f64; 3]; 4],
-    /// Time of a node's step on a mesh of five times as many nodes, which no longer fits the inner caches, over that of the 200 m case.
+    /// Time of a node's step on a mesh of five times as many nodes, which no longer fits the inner caches, over that of the 200 m string.
     pub large_mesh_factor: f64,
     /// Time of a step with the wall along the elements over that with the wall at the nodes, by the methods above.
     #[serde(default = "no_difference")]
     pub along_elements: [f64; 4],
 }
 
-/// For speeds that were measured without it.
+/// Default for speeds that were measured without this ratio.
 fn no_difference() -> [f64; 4] {
     [1.0; 4]
 }
 
-/// Nodes of the large mesh that is timed, over those of the 200 m case.
+/// Nodes of the large mesh that is timed, over those of the 200 m string.
 const LARGE_MESH: f64 = 5.0;
 
-/// Nodes of the 200 m case.
+/// Nodes of the 200 m string.
 const BASE_NODES: f64 = 297.0;
 
 /// Contact iterations that are enough for convergence.
@@ -156,7 +156,7 @@ pub struct CalibrationRun {
 }
 
 impl Plan {
-    /// The plan of a valid scenario; with processor times where the machine's `speed` is known.
+    /// The plan of a valid scenario; with processor times if the machine's `speed` is known.
     ///
     /// # Errors
     /// The scenario has no model.
@@ -164,7 +164,7 @@ impl Plan {
         Self::with_twin(scenario, speed, twin_part(scenario))
     }
 
-    /// The plan of a line of a cost study, whose runs have no twin.
+    /// The plan of a row of a cost study, whose runs have no twin.
     pub(super) fn of_line(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Result<Self, ModelError> {
         Self::with_twin(scenario, speed, 0.0)
     }
@@ -228,8 +228,8 @@ impl Plan {
         })
     }
 
-    /// The plan with what follows from the scenario's equilibrium, which takes as long as that. Where there is none, that is for the run
-    /// to say.
+    /// The plan with the quantities of the scenario's equilibrium, which takes as long as finding it. If there is none, the run reports
+    /// that.
     #[must_use]
     pub fn with_equilibrium(mut self, scenario: &Scenario) -> Self {
         let Some(model) = Model::new(scenario).ok().filter(|model| model.effects.transient) else {
@@ -262,7 +262,7 @@ impl Plan {
         self
     }
 
-    /// Processor time that the point is expected to take \[s\] at most, at its own accuracy or with its cost study; absent where it is not
+    /// Largest expected processor time of the point \[s\], at its own accuracy or with its cost study; absent if it is not
     /// known.
     pub fn cpu_time(&self) -> Option<f64> {
         if self.is_study {
@@ -273,7 +273,7 @@ impl Plan {
 }
 
 impl PlannedStudy {
-    /// Of a scenario with a cost study; none where it cannot be planned, which is for the run to say.
+    /// The study of a scenario with a cost study; none if it cannot be planned, which the run reports.
     fn new(scenario: &Scenario, speed: Option<&MachineSpeed>) -> Option<Self> {
         let rows = cost::plan(scenario).ok()?;
         let members = |row: &cost::PlannedRow| u64::from(row.members.end - row.members.start);
@@ -291,7 +291,7 @@ impl PlannedStudy {
     }
 }
 
-/// Steps of the twin that measures the amplification, over those of the run; where the window is settled the most that it can be.
+/// Steps of the twin that measures the amplification, over those of the run; the largest ratio if the window is settled.
 fn twin_part(scenario: &Scenario) -> f64 {
     if scenario.recording.nodes.is_empty() {
         return 0.0;
@@ -304,7 +304,7 @@ fn degrees_of_freedom(model: &Model) -> usize {
     4 + usize::from(model.effects.torsion) + usize::from(model.effects.axial_motion)
 }
 
-/// The scenario's own accuracy, then the named ones that it is not.
+/// The scenario's own accuracy, then the other named ones.
 fn accuracies(scenario: &Scenario) -> Vec<(&'static str, Accuracy)> {
     let named = [
         ("draft", AccuracyPreset::Draft),
@@ -323,7 +323,7 @@ fn accuracies(scenario: &Scenario) -> Vec<(&'static str, Accuracy)> {
     std::iter::once((own, scenario.accuracy)).chain(others).collect()
 }
 
-/// Nodes of a model's string at an accuracy, which the mesh `auto` follows. A string that has too many then is as it is.
+/// Nodes of a model's string at an accuracy, which the mesh `auto` follows. A string that would have too many nodes stays unchanged.
 fn nodes_at(model: &Model, accuracy: Accuracy) -> usize {
     let scenario = &model.scenario;
     if scenario.mesh != Mesh::AUTO || accuracy == scenario.accuracy {
@@ -346,7 +346,7 @@ impl MethodKind {
         }
     }
 
-    /// Stepping and simulated time \[s\] of a run long enough to be timed: some 10 ms.
+    /// Stepping and simulated time \[s\] of a run long enough for timing: some 10 ms.
     fn sample(self) -> (TimeStepping, f64) {
         match self {
             MethodKind::GeneralizedAlpha => (TimeStepping::fixed(Integrator::GeneralizedAlpha, 5e-4), 0.05),
@@ -361,7 +361,7 @@ impl MethodKind {
 }
 
 /// The runs that measure the speed of a machine: every method with 4, 5 and 6 degrees of freedom a node on the scenario `base`
-/// (the 200 m case), one on a large mesh of it, and every method with the wall along the elements.
+/// (the 200 m string), one on a large mesh of it, and every method with the wall along the elements.
 pub fn calibration_runs(base: &Scenario) -> Vec<CalibrationRun> {
     let run = |method: MethodKind, degrees_of_freedom: usize| {
         let (stepping, duration) = method.sample();
@@ -418,7 +418,7 @@ pub struct RunTime {
 }
 
 impl MachineSpeed {
-    /// The speed from the equilibrium's processor time for each node \[s\] and the calibration runs', in their order.
+    /// The speed from the equilibrium's processor time for each node \[s\] and those of the calibration runs, in their order.
     pub fn from_times(
         statics_per_node: f64,
         runs: impl IntoIterator<Item = (CalibrationRun, RunTime)>,
@@ -447,8 +447,8 @@ impl MachineSpeed {
         speed
     }
 
-    /// Processor time of one step \[s\]. Between the two meshes that were timed the cost of a node grows with the logarithm
-    /// of their number; beyond them it stays.
+    /// Processor time of one step \[s\]. Between the two timed meshes the cost of a node grows with the logarithm
+    /// of their number; beyond them it stays constant.
     fn step(&self, method: MethodKind, degrees_of_freedom: usize, nodes: usize) -> f64 {
         let nodes = nodes as f64;
         let way = ((nodes / BASE_NODES).ln() / LARGE_MESH.ln()).clamp(0.0, 1.0);
@@ -457,7 +457,7 @@ impl MachineSpeed {
     }
 }
 
-/// Processor time that the lines are expected to take on a machine of this speed \[s\], and how many lines it leaves out, since
+/// Expected processor time of the rows on a machine of this speed \[s\], and the number of rows that it omits, since
 /// their steps adapt themselves.
 pub fn expected_cpu_time(rows: &[cost::PlannedRow], speed: &MachineSpeed) -> (f64, usize) {
     let cost = |row: &cost::PlannedRow| {
@@ -587,7 +587,7 @@ mod tests {
         let steps = 3.0 * (60.0 * 17e3 + 60.0 / 1.25e-4 + 60.0 / 1e-3);
         assert!((study.cpu_time.unwrap() / (steps * 297e-6) - 1.0).abs() < 1e-9, "{study:?}");
         assert_eq!(plan.cpu_time(), study.cpu_time);
-        // Beside it stands one run of the scenario.
+        // The plan also has one run of the scenario.
         assert_eq!((&plan.accuracies, plan.simulated_time), (&one.accuracies, 60.0));
 
         let adaptive =

@@ -1,7 +1,7 @@
-//! By how much a scenario amplifies a disturbance: a twin of the run that starts next to it in the window of its statistics.
+//! Amplification of a disturbance by a scenario: a twin of the run that starts next to it in the window of its statistics.
 //!
-//! Errors of steps are disturbances, too: what a scenario does to one it does to the other. The twin costs what the window is of the run, a third
-//! at most.
+//! Errors of steps are disturbances, too, and are amplified alike. The cost of the twin, relative to the run, is the window's share of the run, a
+//! third at most.
 
 use std::fmt;
 
@@ -21,13 +21,13 @@ use drillsweep_sim::solve::statics::Equilibrium;
 /// Distance from the run of a twin that starts [`DISTURBANCE`] away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Sensitivity {
-    /// From where the twin starts to where it ends \[s\].
+    /// Window from the start to the end of the twin \[s\].
     pub window: TimeWindow,
-    /// Largest distance of any recorded node from the run's over that of the start; absent where the twin diverged.
+    /// Largest distance of any recorded node from the run's over that of the start; absent if the twin diverged.
     pub amplification: Option<f64>,
-    /// Growth of the largest distance from the first half of the window to the second \[1/s\]; absent where the twin diverged or nothing moved.
+    /// Growth of the largest distance from the first half of the window to the second \[1/s\]; absent if the twin diverged or nothing moved.
     pub growth_rate: Option<f64>,
-    /// Largest distance of each recorded node \[m\]; empty where the twin diverged.
+    /// Largest distance of each recorded node \[m\]; empty if the twin diverged.
     #[serde(skip)]
     pub distances: Vec<f64>,
 }
@@ -35,7 +35,7 @@ pub struct Sensitivity {
 /// Reason for which the sensitivity of a run is not known.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SensitivityError {
-    /// It was cancelled or suspended.
+    /// The run was cancelled or suspended.
     #[error("the run's twin was stopped")]
     Stopped,
     /// The twin cannot be set up.
@@ -47,7 +47,7 @@ pub enum SensitivityError {
 }
 
 impl Sensitivity {
-    /// Runs the twin of a finished run; none where no node is recorded.
+    /// Runs the twin of a finished run; none if no node is recorded.
     ///
     /// # Errors
     /// The run is stopped, or its histories cannot be read.
@@ -110,7 +110,7 @@ impl Sensitivity {
         }))
     }
 
-    /// The first recorded node at which run and twin have parted, by its orbit; all have where the twin diverged, and none whose distance
+    /// The first recorded node at which run and twin have parted, by its orbit. All have if the twin diverged, and none if the distance
     /// never exceeds that of the start.
     pub fn parted<'a>(&self, orbits: &'a [OrbitSummary]) -> Option<&'a OrbitSummary> {
         let distance = |node: usize| self.distances.get(node).copied().unwrap_or(f64::INFINITY);

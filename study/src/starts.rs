@@ -8,7 +8,7 @@ use super::finer::asked_of;
 use super::summary::{OrbitSummary, TransientSummary};
 use drillsweep_sim::solve::run::DISTURBANCE;
 
-/// The statistics of a run beside those of the same run from the other start, the worst node each.
+/// Comparison of a run's statistics with those of the same run from the other start, each of the worst node.
 ///
 /// Tension, torque and mud of a run are those of its equilibrium, so that the two runs differ in these too.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct StartsCompared {
 }
 
 impl StartsCompared {
-    /// The comparison of a run from the friction `own` with the same run from the other one, by [what is asked](asked_of) of an accuracy.
+    /// The comparison of a run from the friction `own` with the same run from the other one, by the [bounds](asked_of) of an accuracy.
     pub fn new(
         run: &TransientSummary,
         other: &TransientSummary,
@@ -57,7 +57,7 @@ impl StartsCompared {
     }
 }
 
-/// Difference of two statistics \[m\] relative to the larger; none between motions below the disturbance of an ensemble, which are as good
+/// Difference of two statistics \[m\] relative to the larger; none between motions below the disturbance of an ensemble, which count
 /// as rest.
 fn difference([a, b]: [f64; 2]) -> f64 {
     let larger = a.abs().max(b.abs());

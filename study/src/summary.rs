@@ -1,4 +1,4 @@
-//! One row of scalars about a point: what a sweep's table shows.
+//! Scalars of a point: its row of a sweep's table.
 
 use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use drillsweep_sim::force::effect::CONTACT_WORK;
@@ -14,10 +14,10 @@ use drillsweep_sim::solve::statics::Equilibrium;
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
 
-/// Beyond this frequency \[Hz\] nothing in a drillstring's lateral motion lives long but what keeps being fed.
+/// Frequency \[Hz\] beyond which lateral motion of a drillstring soon dies out unless it is excited continuously.
 const HIGH_FREQUENCY_HZ: f64 = 100.0;
 
-/// Lines reported of each spectrum.
+/// Number of lines reported of each spectrum.
 const LINES: usize = 3;
 
 /// The equilibrium and the mud around it.
@@ -70,9 +70,9 @@ pub struct TransientSummary {
     pub error_estimate: ErrorEstimate,
     /// Energy left over at the end \[J\]: the integration's own error.
     pub energy_residual: f64,
-    /// Its size relative to the bound beyond which a run is stopped; absent where nothing moved.
+    /// Its size relative to the bound beyond which a run is stopped; absent if nothing moved.
     pub energy_residual_of_bound: Option<f64>,
-    /// The same relative to the net work of the contacts; absent where that is less than what rounding may leave, as at rest.
+    /// The same relative to the net work of the contacts; absent if that is less than rounding may leave, as at rest.
     pub energy_residual_ratio: Option<f64>,
 }
 
@@ -97,10 +97,10 @@ pub struct OrbitSummary {
     pub orbit_radius_rms: f64,
     /// Standard deviation of the distance from the hole's axis \[m\]: the motion towards and off the wall alone.
     pub radius_deviation: f64,
-    /// Root mean square motion at frequencies above 100 Hz \[m\]: chatter of the contacts or of the method, if any. Absent where the
+    /// Root mean square motion at frequencies above 100 Hz \[m\]: chatter of the contacts or of the method, if any. Absent if the
     /// recording rate is below 250 Hz.
     pub high_frequency_rms: Option<f64>,
-    /// Half widths of the confidence intervals of 95 % of its statistics; absent but for irregular motion.
+    /// Half widths of the confidence intervals of 95 % of its statistics; of irregular motion only.
     pub interval: Option<OrbitInterval>,
 }
 
@@ -160,7 +160,7 @@ impl StaticsSummary {
 }
 
 impl TransientSummary {
-    /// Sums up a finished run, node by node: no more of its histories is in memory than two series of one node over a window.
+    /// Summarises a finished run, node by node: no more of its histories is in memory than two series of one node over a window.
     ///
     /// # Errors
     /// The histories cannot be read.
@@ -244,7 +244,7 @@ impl TransientSummary {
     }
 }
 
-/// Energy left over at the end relative to the net work of the contacts; absent where that is less than what rounding may
+/// Energy left over at the end relative to the net work of the contacts; absent if that is less than rounding may
 /// leave, as at rest.
 pub(crate) fn energy_residual_ratio<H>(records: &Records<H>) -> Option<f64> {
     let last = records.energy.last().copied().unwrap_or_default();

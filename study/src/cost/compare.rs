@@ -1,4 +1,4 @@
-//! A line of a study against the reference: statistics with their intervals, spectral lines, histories.
+//! Comparison of a row of a study with the reference: statistics with their intervals, spectral lines, histories.
 
 use drillsweep_scenario::StudyReference;
 
@@ -12,36 +12,36 @@ use crate::ensemble::spread;
 use drillsweep_sim::math::signal::{FullSpectrum, Peak, PeakSearch};
 use drillsweep_sim::solve::run::NodeHistory;
 
-/// Lines of the reference that are looked for in other runs, strongest first, and how far apart they are at least \[Hz\].
+/// Search for lines of the reference in other runs: the number of the strongest ones, and their least distance \[Hz\].
 const NAMED_LINES: PeakSearch = PeakSearch { count: 3, min_separation_hz: 0.5, exclude_mean: true };
 
-/// Lines of a run that are looked for in the reference.
+/// Search for lines of a run in the reference.
 const ALL_LINES: PeakSearch = PeakSearch { count: usize::MAX, min_separation_hz: 0.5, exclude_mean: true };
 
-/// Two lines closer than this are the same \[Hz\], or, where bins are wider, closer than a bin.
+/// Distance below which two lines are the same \[Hz\]; with wider bins, the width of a bin.
 const SAME_LINE_HZ: f64 = 0.3;
 
-/// Lines below this part of the reference's highest do not count.
+/// Least height of a line, over the reference's highest.
 const LOWEST_LINE: f64 = 0.05;
 
-/// A line of one is the other's too where that is at least so high, compared with it.
+/// Least height at which a line of one spectrum counts as present in the other, compared with it.
 const PRESENT: f64 = 0.5;
 
-/// Spurious lines that a report names for each node at most, the highest first.
+/// Largest number of spurious lines that a report names for each node, the highest first.
 const MOST_SPURIOUS: usize = 10;
 
-/// The members of one line of a study.
+/// The members of one row of a study.
 pub(super) type Ensemble<'a> = &'a [&'a Measure];
 
 /// Reference of a comparison: the mean of one or two ensembles.
 #[derive(Clone, Copy)]
 pub(super) struct Reference<'a> {
-    /// Not empty, nor is any of them.
+    /// The ensembles; neither the list nor any of them is empty.
     parts: &'a [Vec<&'a Measure>],
 }
 
 impl<'a> Reference<'a> {
-    /// None without an ensemble, or where one is without a member.
+    /// The reference of some ensembles; `None` without an ensemble, or if one is without a member.
     pub(super) fn new(parts: &'a [Vec<&'a Measure>]) -> Option<Self> {
         (!parts.is_empty() && parts.iter().all(|part| !part.is_empty())).then_some(Self { parts })
     }
@@ -63,7 +63,7 @@ impl<'a> Reference<'a> {
         node.map(|node| node.measured_depth)
     }
 
-    /// The errors of an ensemble in the quantities for which there is a reference; histories up to `horizon` \[s\].
+    /// The errors of an ensemble in the quantities with a reference; histories up to `horizon` \[s\].
     pub(super) fn errors(
         self,
         of: Ensemble<'_>,
@@ -138,7 +138,7 @@ impl<'a> Reference<'a> {
         })
     }
 
-    /// The reference's lines in an ensemble's mean spectra, and lines there that the reference has not; absent without
+    /// The reference's lines in an ensemble's mean spectra, and spurious lines there; absent without
     /// spectra.
     fn line_errors(self, of: Ensemble<'_>) -> Option<LineErrors> {
         let mut errors =
@@ -206,8 +206,8 @@ fn values(of: Ensemble<'_>, quantity: Quantity, node: usize) -> Vec<f64> {
     of.iter().map(|member| member.statistic(quantity, node)).collect()
 }
 
-/// The mean over ensembles of the mean over their members of a node's amplitudes; absent without spectra, or where they have
-/// not the same frequencies.
+/// The mean over ensembles of the mean over their members of a node's amplitudes; absent without spectra, or if their
+/// frequencies differ.
 fn mean_spectrum<'a>(ensembles: impl IntoIterator<Item = Ensemble<'a>>, node: usize) -> Option<FullSpectrum> {
     let mut sum: Option<FullSpectrum> = None;
     let ensembles: Vec<_> = ensembles.into_iter().collect();
@@ -238,7 +238,7 @@ fn compare_lines(measured_depth: f64, own: &FullSpectrum, reference: &FullSpectr
     let reach = SAME_LINE_HZ.max(reference.resolution_hz);
     let own_lines = own.peaks(&ALL_LINES);
     for line in named.into_iter().filter(|line| line.amplitude >= LOWEST_LINE * highest) {
-        // The highest stand first.
+        // The highest lines come first.
         let is_it = |own: &&Peak| {
             (own.frequency_hz - line.frequency_hz).abs() <= reach && own.amplitude >= PRESENT * line.amplitude
         };
@@ -277,7 +277,7 @@ fn amplitude_near(spectrum: &FullSpectrum, frequency_hz: f64, reach: f64) -> f64
     near.fold(0.0, |most, (_, amplitude)| most.max(*amplitude))
 }
 
-/// L2 distance of the first `samples` samples over the motion away from the start; absent where nothing moved.
+/// L2 distance of the first `samples` samples over the motion away from the start; absent if nothing moved.
 fn trajectory_error(of: &[NodeHistory], reference: &[NodeHistory], samples: usize) -> Option<f64> {
     let (mut distance, mut motion) = (0.0, 0.0);
     for (a, b) in of.iter().zip(reference) {

@@ -1,4 +1,4 @@
-//! Means of ensembles against each other, with a confidence interval.
+//! Difference of ensembles' means, with a confidence interval.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -30,7 +30,7 @@ pub(super) fn contrast(terms: &[(f64, &[f64])]) -> Contrast {
     }
     let half_width = is_known.then(|| {
         let freedom = variance * variance / squares;
-        // Members that are all alike have no freedom to speak of, and nothing to be uncertain about.
+        // Members that are all alike have no degrees of freedom and no uncertainty.
         match StudentsT::new(0.0, 1.0, freedom) {
             Ok(student) if variance > 0.0 => student.inverse_cdf(0.5 + 0.5 * CONFIDENCE) * variance.sqrt(),
             _ => 0.0,

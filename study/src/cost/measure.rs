@@ -1,4 +1,4 @@
-//! Data kept of a run: what users read of it, node by node.
+//! Data kept of a run: its reported results, node by node.
 
 use drillsweep_scenario::{TimeStepping, TimeWindow};
 
@@ -12,7 +12,7 @@ use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::run::{MotionRegime, NodeHistory, Records};
 use drillsweep_sim::solve::statics::Equilibrium;
 
-/// Histories are kept of so many members: one to compare, and one to part from it.
+/// Number of members whose histories are kept: one for comparison, and one that parts from it.
 const MEMBERS_WITH_HISTORIES: u32 = 2;
 
 /// Data that a study keeps of a run.
@@ -36,7 +36,7 @@ pub struct Measure {
     pub(crate) nodes: Vec<NodeMeasure>,
     /// Mean over the orbit window of the sum of all normal forces \[N\]; absent for runs that settle, whose window is known at their end.
     pub(crate) contact_force: Option<f64>,
-    /// Energy residual over the net work of the contacts; absent where there was none.
+    /// Energy residual over the net work of the contacts; absent without such work.
     pub(crate) energy: Option<f64>,
     pub(crate) error_estimate: f64,
     /// Half the hole's diameter \[m\].
@@ -64,7 +64,7 @@ pub(crate) struct NodeMeasure {
 }
 
 impl Measure {
-    /// Keeps of a run, the `member` of its ensemble, what the study compares.
+    /// Keeps the data of a run, the `member` of its ensemble, that the study compares.
     pub fn new(model: &Model, equilibrium: &Equilibrium, records: &Records, member: u32) -> Self {
         let scenario = &model.scenario;
         let settling = &records.settling;
@@ -143,14 +143,14 @@ impl Measure {
             Quantity::MeanRadius => of_node(|node| node.mean_radius),
             Quantity::TorsionalSpeed => of_node(|node| node.torsional_speed),
             Quantity::ContactForce => self.contact_force.unwrap_or(0.0),
-            // Lines are not one number; they are compared line by line.
+            // Lines are not one number: they are compared one by one.
             Quantity::Lines => 0.0,
         }
     }
 }
 
 impl NodeMeasure {
-    /// Statistics over the samples of the windows; zero where a window has none.
+    /// Statistics over the samples of the windows; zero if a window has none.
     pub(crate) fn new(
         measured_depth: f64,
         history: &NodeHistory,

@@ -1,12 +1,12 @@
 //! Cost of accuracy: a work-precision study of a scenario.
 //!
-//! [`plan`] lists the runs that a study needs, [`Measure`] keeps of a run what users read of it (statistics and lines over the
-//! windows that a summary has), and [`report`] compares. The runs themselves, and their time, are the caller's: nothing here
-//! knows a clock.
+//! [`plan`] lists the runs that a study needs, [`Measure`] keeps the reported results of a run (statistics and lines over the
+//! windows of a summary), and [`report`] compares. The caller makes the runs and measures their time: this module
+//! has no clock.
 //!
-//! An error is meant against what two methods of different kind both reach. Members of an ensemble share the bias of their
-//! method, and a finer step of the same method may share it too; what an explicit and an implicit method agree on is the
-//! equations' own. If they do not agree, there is nothing to compare with, and the report shows it.
+//! An error is relative to a reference on which two independent methods agree. Members of an ensemble share the bias of their
+//! method, and a finer step of the same method may share it too; a result on which an explicit and an implicit method agree is the
+//! equations' own. If they do not agree, there is no reference, and the report shows it.
 
 mod compare;
 mod interval;

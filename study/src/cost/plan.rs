@@ -14,31 +14,31 @@ use drillsweep_sim::solve::run::recorded_nodes;
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::solve::step::rk4_stability_limit;
 
-/// Part of RK4's stability limit, found about the equilibrium, that its steps in the reference have.
+/// Steps of RK4 in the reference, as part of its stability limit about the equilibrium.
 const BELOW_LIMIT: f64 = 0.95;
 
 /// Step \[s\] of the reference's ESDIRK4.
 const ESDIRK4_STEP: f64 = 1.25e-4;
 
-/// Steps \[s\] of a reference for settled statistics, which take no history along, whose error grows: of generalized-alpha, since RK4's limit
-/// on a mesh so fine is a few microseconds, and of ESDIRK4.
+/// Steps \[s\] of a reference for settled statistics, which needs no histories, whose error grows: of generalized-alpha, since RK4's limit
+/// on so fine a mesh is a few microseconds, and of ESDIRK4.
 const SETTLED_STEPS: [f64; 2] = [6.25e-5, 1e-3];
 
-/// Most contact iterations of the reference's implicit methods.
+/// Largest number of contact iterations of the reference's implicit methods.
 const REFERENCE_SWEEPS: u32 = 30;
 
-/// Factor on the scenario's element lengths that the reference of runs that settle has: finer than the 0.4 of the accuracy `reference`.
+/// Factor on the scenario's element lengths in the reference of runs that settle: finer than the 0.4 of the accuracy `reference`.
 const REFERENCE_MESH: f64 = 0.25;
 
 /// Meshes of runs that settle, as factors on the scenario's own.
 const SETTLED_MESHES: [f64; 2] = [2.0, 0.5];
 
-/// One line of a study: one stepping of one scenario, run by one or more members.
+/// One row of a study: one stepping of one scenario, run by one or more members.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedRow {
     /// Its role.
     pub role: Role,
-    /// Name of the line; see [`CostRow::name`](super::CostRow::name).
+    /// Name of the row; see [`CostRow::name`](super::CostRow::name).
     pub name: String,
     /// The scenario to simulate, with duration, windows and accuracy of the study.
     pub scenario: Scenario,
@@ -46,12 +46,12 @@ pub struct PlannedRow {
     pub members: Range<u32>,
 }
 
-/// Role of a line of a study.
+/// Role of a row of a study.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
     /// One of the two methods that make the reference; in an ablation the whole scenario.
     Reference,
-    /// The whole scenario of an ablation, disturbed: where it parts from itself, no history can be trusted.
+    /// The whole scenario of an ablation, disturbed: from the time at which it parts from the undisturbed run, no history can be trusted.
     Twin,
     /// A method and step.
     Method,
@@ -69,7 +69,7 @@ pub enum Role {
     },
 }
 
-/// The lines of a study, its reference first.
+/// The rows of a study, its reference first.
 ///
 /// # Errors
 /// The scenario has no equilibrium.
@@ -95,7 +95,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
         members: 0..study.members,
     };
     let interval = 1.0 / base.recording.rate_hz;
-    // Lines of other steps have the mesh that the scenario has at its own accuracy.
+    // Rows with other steps have the mesh of the scenario at its own accuracy.
     let mut own = base.clone();
     own.scale_mesh(1.0);
     let has_limit = settles && !wall_depends_on_mesh(scenario);
@@ -163,7 +163,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
     Ok(rows)
 }
 
-/// A name for the lines that have the scenario's own accuracy.
+/// A name for the rows with the scenario's own accuracy.
 fn name_of(accuracy: &Accuracy) -> &'static str {
     match accuracy {
         Accuracy::Preset(preset) => preset.name(),
@@ -172,7 +172,7 @@ fn name_of(accuracy: &Accuracy) -> &'static str {
     }
 }
 
-/// The runs of an effect ablation: everything else stays as it was decided for the whole scenario.
+/// The runs of an effect ablation: all other effects stay as decided for the whole scenario.
 fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<PlannedRow> {
     let decisions = decide_effects(scenario);
     for decision in &decisions {
@@ -193,8 +193,8 @@ fn ablation(scenario: &Scenario, study: &CostStudy, mut base: Scenario) -> Vec<P
     rows
 }
 
-/// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers, and
-/// if the duration is another one, orbits over its last third and spectra over its last sixth.
+/// The recording of a study's runs: the scenario's own, but nodes by depth, since another mesh has other node numbers. If
+/// the duration differs, orbits are over its last third and spectra over its last sixth.
 fn recording(scenario: &Scenario, duration: f64, model: &Model) -> Recording {
     let asked = &scenario.recording;
     let last = |part: f64| TimeWindow::last(part, duration, asked.rate_hz);
@@ -324,7 +324,7 @@ mod tests {
         let steps = |index: usize| rows[index].scenario.accuracy.time_stepping().step;
         assert!(steps(5) < steps(0), "RK4's limit is that of its mesh");
         assert_ne!(rows[6].scenario.statics.friction, rows[3].scenario.statics.friction);
-        // Without a limit of the mesh only steps are compared.
+        // Without a limit of the mesh, only steps are compared.
         let rows = of("paper-200m", &|s| {
             s.recording.orbit_window = Some(OrbitWindow::SETTLED);
             s.recording.spectrum_windows = None;

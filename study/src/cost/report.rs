@@ -12,14 +12,14 @@ use super::total::{WALL_OF_NODES, total};
 use crate::ensemble::parting_time;
 use drillsweep_sim::solve::run::MotionRegime;
 
-/// Energy residual, relative to the contacts' net work, from which on a reference is doubted.
+/// Energy residual, relative to the contacts' net work, from which a reference is doubted.
 const UNSOUND_RESIDUAL: f64 = 0.01;
 
-/// Quantities that recommendations are made for, and errors that are wanted of them.
+/// Quantities with recommendations, and wanted errors of them.
 const RECOMMENDED: [Quantity; 2] = [Quantity::OrbitSize, Quantity::RadiusDeviation];
 const WANTED: [f64; 3] = [0.08, 0.02, 0.003];
 
-/// A line of the study with its outcome: its members' measures with their processor times \[s\], or why one failed.
+/// A row of the study with its outcome: its members' measures with their processor times \[s\], or the failure of one.
 struct Ran<'a> {
     planned: &'a PlannedRow,
     outcome: Result<(Vec<&'a Measure>, f64), String>,
@@ -43,12 +43,12 @@ impl<'a> Ran<'a> {
         Self { planned, outcome: Ok((measures, cpu_time)) }
     }
 
-    /// Its members; none where one failed.
+    /// The members of the row; none if one failed.
     fn members(&self) -> &[&'a Measure] {
         self.outcome.as_ref().map_or(&[], |(measures, _)| measures.as_slice())
     }
 
-    /// A line of the report, without errors and speed.
+    /// A row of the report, without errors and speed.
     fn row(&self) -> CostRow {
         let stepping = self.planned.scenario.accuracy.time_stepping();
         let first = self.members().first();
@@ -76,8 +76,8 @@ impl<'a> Ran<'a> {
     }
 }
 
-/// Compares the runs of a study. `runs` belong to the lines of [`plan`](super::plan), in its order and member by member; each is
-/// its measure with its processor time \[s\], or why it failed.
+/// Compares the runs of a study. `runs` belong to the rows of [`plan`](super::plan), in its order and member by member; each is
+/// its measure with its processor time \[s\], or the reason of its failure.
 ///
 /// # Errors
 /// All methods of the reference failed.
@@ -103,7 +103,7 @@ pub fn report(
     };
     let twins = with_role(|role| *role == Role::Twin).map(Ran::members);
     let histories_part_at = parted_at(&parts, twins);
-    // What only one of two methods found is no reference, of histories neither.
+    // One method alone is no reference, also not for histories.
     let is_whole = parts.len() == references.len();
     let horizon = if is_whole { histories_part_at.unwrap_or(base.duration) } else { 0.0 };
     let has_reference = |quantity: Quantity, node: usize| {
@@ -213,7 +213,7 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
     times.filter_map(parted).reduce(f64::min)
 }
 
-/// Enters how many times faster than RK4 with its longest fixed step each line is.
+/// Sets the speed of each row relative to RK4 with its longest fixed step.
 fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow], settles: bool) {
     let cost_of = |row: &CostRow| if settles { row.cpu_time } else { row.cpu_per_simulated_second };
     let Some(cost) = rk4(references.iter().chain(methods.iter())).map(cost_of) else { return };
@@ -270,8 +270,8 @@ fn depths_words(depths: &[f64]) -> String {
     format!("{} m", depths.join(", "))
 }
 
-/// The cheapest line whose bias, with half its interval's width, is no more than `accuracy`, all finer fixed steps of its method
-/// keeping to that as well: one that hits by chance is none. Absent where there is no reference at any node.
+/// The cheapest row whose bias, with half its interval's width, is at most `accuracy`. All finer fixed steps of its method must meet
+/// that as well: a row that meets it by chance does not count. Absent if there is no reference at any node.
 fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Option<Recommendation> {
     let agreement = report.agreement(quantity).filter(|agreement| agreement.has_reference)?;
     let within = |row: &CostRow| {

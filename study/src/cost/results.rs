@@ -36,7 +36,7 @@ impl Quantity {
         Quantity::Lines,
     ];
 
-    /// The name on the wire.
+    /// The name in requests and responses.
     pub fn name(self) -> &'static str {
         match self {
             Quantity::OrbitSize => "orbit_size",
@@ -70,7 +70,8 @@ impl Quantity {
         matches!(self, Quantity::RadiusDeviation | Quantity::TorsionalSpeed | Quantity::Lines)
     }
 
-    /// Values below this are rest: a nanometre, a micronewton, a nanoradian a second. Differences are relative to no less.
+    /// Value below which the quantity is at rest: a nanometre, a micronewton, a nanoradian a second. It is the least denominator of relative
+    /// differences.
     pub(crate) fn floor(self) -> f64 {
         if self == Quantity::ContactForce { 1e-6 } else { 1e-9 }
     }
@@ -83,39 +84,39 @@ pub struct CostReport {
     pub scenario: String,
     /// Simulated time of each run \[s\], at most if they settle.
     pub duration: f64,
-    /// True if each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, against the
+    /// True if each run went on until its own statistics had settled. Errors are then whole ones: of steps, mesh and sampling, relative to the
     /// settled values of the two methods on a finer mesh.
     pub settles: bool,
-    /// Duration of the scenario itself \[s\]. Where the runs are shorter, the windows are not those that a summary has, and
+    /// Duration of the scenario itself \[s\]. If the runs are shorter, their windows differ from those of a summary, and
     /// later motion is not compared.
     pub scenario_duration: f64,
-    /// Window of orbit size, radius, contact force and torsional speed \[s\]; of runs that settle that of the reference's first method.
+    /// Window of orbit size, radius, contact force and torsional speed \[s\]; for runs that settle, that of the reference's first method.
     pub orbit_window: TimeWindow,
-    /// Window of the lines \[s\]; absent where the scenario has none, or runs have their own.
+    /// Window of the lines \[s\]; absent if the scenario has none, or runs have their own.
     pub spectrum_window: Option<TimeWindow>,
     /// Members of the ensemble that each method ran.
     pub members: u32,
     /// Time \[s\] at which the reference's methods, or two members of one of them, have parted: histories are compared up to
-    /// there. Absent where they stayed together.
+    /// it. Absent if they stayed together.
     pub histories_part_at: Option<f64>,
-    /// The two methods whose agreement makes the reference, each against the other; of an ablation the whole scenario at its
+    /// The two methods whose agreement makes the reference, each compared with the other; for an ablation, the whole scenario at its
     /// own accuracy.
     pub references: Vec<CostRow>,
     /// Agreement of these two, by quantity. Empty if one of them failed, and for an ablation.
     pub agreements: Vec<Agreement>,
     /// Presets, methods and steps.
     pub methods: Vec<CostRow>,
-    /// The other start at the scenario's accuracy: an equilibrium with friction at break-away if the scenario's slides, and the other way
-    /// round. Of runs that settle alone.
+    /// The other start at the scenario's accuracy, for runs that settle only: an equilibrium with friction at break-away if the scenario's slides,
+    /// and the other way round.
     pub starts: Vec<CostRow>,
-    /// Meshes, at the accuracy `reference`, against the finest; of runs that settle at the scenario's own accuracy, against the reference.
+    /// Meshes, at the accuracy `reference`, compared with the finest; for runs that settle at the scenario's own accuracy, with the reference.
     /// With the contact law `per_node` a finer mesh is another, stiffer wall, and these rows need not converge.
     pub meshes: Vec<CostRow>,
-    /// The scenario without one effect at a time, against the whole: what stands as an error is what the effect changes.
+    /// The scenario without one effect at a time, compared with the whole: the errors are the changes by the effect.
     pub effects: Vec<CostRow>,
     /// Cheapest methods for some accuracies.
     pub recommendations: Vec<Recommendation>,
-    /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent where none was asked for.
+    /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent if none was requested.
     pub total: Option<TotalCost>,
     /// Reasons for doubt.
     pub warnings: Vec<String>,
@@ -127,7 +128,7 @@ impl CostReport {
         self.agreements.iter().find(|agreement| agreement.quantity == quantity)
     }
 
-    /// Number of lines, those of the reference included.
+    /// Number of rows, those of the reference included.
     pub fn rows(&self) -> usize {
         self.references.len()
             + self.methods.len()
@@ -136,12 +137,12 @@ impl CostReport {
             + self.effects.len()
     }
 
-    /// The run of RK4 with fixed steps that speeds are relative to, that with the longest step; absent where none completed.
+    /// The run of RK4 with fixed steps that is the basis of speeds, the one with the longest step; absent if none completed.
     pub fn rk4(&self) -> Option<&CostRow> {
         rk4(self.references.iter().chain(&self.methods))
     }
 
-    /// The lines of a work-precision comparison: the reference's two methods and all others; none of an ablation.
+    /// The rows of a work-precision comparison: the reference's two methods and all others; none of an ablation.
     pub fn compared(&self) -> impl Iterator<Item = &CostRow> {
         let references = if self.effects.is_empty() { self.references.as_slice() } else { &[] };
         references.iter().chain(&self.methods)
@@ -153,25 +154,25 @@ impl CostReport {
 pub struct Agreement {
     /// The quantity.
     pub quantity: Quantity,
-    /// Largest relative difference of any node; of lines the largest relative difference of an amplitude.
+    /// Largest relative difference of any node; for lines, the largest relative difference of an amplitude.
     pub difference: f64,
-    /// Half the width of the difference's 95 % confidence interval, where it is least sure; absent with one member, and of lines.
+    /// Half the width of the difference's 95 % confidence interval, at the node with the widest; absent with one member, and for lines.
     pub half_width: Option<f64>,
-    /// Difference up to which they agree.
+    /// Difference up to which the methods agree.
     pub bound: f64,
     /// True if the methods agree at any node. If not, no reference exists: errors in this quantity are not reported. Lines agree if
     /// both methods have the same ones at all nodes.
     pub has_reference: bool,
-    /// Node by node, and of lines, line by line.
+    /// Agreement by node, and for lines, by line.
     pub nodes: Vec<NodeAgreement>,
 }
 
 /// Agreement of the two methods of a reference at one node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeAgreement {
-    /// Measured depth of the node \[m\]; absent where the value is the whole string's.
+    /// Measured depth of the node \[m\]; absent if the value is the whole string's.
     pub measured_depth: Option<f64>,
-    /// Values of the two: lengths \[m\], forces \[N\], speeds \[rad/s\].
+    /// Values of the two methods: lengths \[m\], forces \[N\], speeds \[rad/s\].
     pub values: [f64; 2],
     /// Their relative difference.
     pub difference: f64,
@@ -193,23 +194,23 @@ impl Agreement {
     }
 }
 
-/// One line of a study against its reference.
+/// One row of a study, compared with its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostRow {
     /// `draft`, `standard` or `reference` for these accuracies, `A` and `B` for the two methods whose agreement makes the
     /// study's reference, and the integrator's name for all others.
     pub name: String,
-    /// The effect that was switched off; absent where none was.
+    /// The effect that was switched off; absent if none was.
     pub effect: Option<Effect>,
     /// Method.
     pub integrator: Integrator,
     /// Step \[s\]; of an adaptive method the longest.
     pub step: f64,
-    /// Tolerance of the adaptive step; absent where it is fixed.
+    /// Tolerance of the adaptive step; absent if the step is fixed.
     pub tolerance: Option<f64>,
-    /// Contact iterations a solve at most (implicit methods).
+    /// Largest number of contact iterations a solve (implicit methods).
     pub contact_sweeps: u32,
-    /// Factor on the mesh's target element lengths, next to the scenario's own at its own accuracy.
+    /// Factor on the mesh's target element lengths, relative to the scenario's own at its own accuracy.
     pub mesh_factor: f64,
     /// Elements of the mesh.
     pub elements: usize,
@@ -217,27 +218,27 @@ pub struct CostRow {
     pub steps: u64,
     /// Parts into which each step was cut so that the contact iterations are stable.
     pub step_subdivisions: u32,
-    /// Simulated time of the first member \[s\]; 0 where it failed.
+    /// Simulated time of the first member \[s\]; 0 if it failed.
     pub simulated_time: f64,
-    /// Kind of motion over the window of the first member's statistics; absent where it failed.
+    /// Kind of motion over the window of the first member's statistics; absent if it failed.
     pub regime: Option<MotionRegime>,
     /// Processor time of the run in time \[s\], mean of the members.
     pub cpu_time: f64,
     /// Processor time per simulated second.
     pub cpu_per_simulated_second: f64,
-    /// Speed relative to RK4 with the longest of its fixed steps, usually 0.95 of its stability limit on the mesh, by processor time per simulated
-    /// second, or of runs that settle by that of the whole run; absent where the study has none.
+    /// Speed relative to RK4 with the longest of its fixed steps, usually 0.95 of its stability limit on the mesh: by processor time per simulated
+    /// second, for runs that settle by that of the whole run; absent if the study has no such run.
     pub speed_over_rk4: Option<f64>,
-    /// Its errors against the reference; absent if it failed.
+    /// Its errors relative to the reference; absent if it failed.
     pub errors: Option<CostErrors>,
     /// Reason of the failure.
     pub failure: Option<String>,
 }
 
-/// Errors of a line against the reference.
+/// Errors of a row relative to the reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct CostErrors {
-    /// Orbit size; absent where there is no reference for it at any node, as in all that follow.
+    /// Orbit size; absent, like all the following, if there is no reference for it at any node.
     pub orbit_size: Option<StatisticError>,
     /// Standard deviation of the distance from the hole's axis.
     pub radius_deviation: Option<StatisticError>,
@@ -249,21 +250,21 @@ pub struct CostErrors {
     pub torsional_speed: Option<StatisticError>,
     /// Spectral lines; absent without a spectrum window as well.
     pub lines: Option<LineErrors>,
-    /// L2 distance of the first member's (u, v) at the recorded nodes from those of the reference's first method, up to where
-    /// histories part, over the motion away from the start: of the history, not of anything after it.
+    /// L2 distance of the first member's (u, v) at the recorded nodes from those of the reference's first method, up to the time at which
+    /// histories part, over the motion away from the start: an error of the history up to then.
     pub trajectory: Option<f64>,
     /// Static position: largest distance of a node, over the hole's radius.
     pub static_position: f64,
     /// C_f, relative, mean over the string's length; absent without mud.
     pub friction_coefficient: Option<f64>,
-    /// Energy residual over the net work of the contacts, largest of the members; absent where there was none.
+    /// Energy residual over the net work of the contacts, largest of the members; absent without such work.
     pub energy: Option<f64>,
     /// The run's own estimate of its error, relative to the motion, over the whole run; largest of the members.
     pub estimate: f64,
 }
 
 impl CostErrors {
-    /// The error of a statistic; absent for lines, which are not one number, and where there is no reference.
+    /// The error of a statistic; absent for lines, which are not one number, and without a reference.
     pub fn statistic(&self, quantity: Quantity) -> Option<&StatisticError> {
         match quantity {
             Quantity::OrbitSize => self.orbit_size.as_ref(),
@@ -276,7 +277,7 @@ impl CostErrors {
     }
 }
 
-/// The error of a statistic at the worst recorded node, where bias and half the interval's width together are largest.
+/// The error of a statistic at the worst recorded node, with the largest sum of bias and half the interval's width.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct StatisticError {
     /// Mean of the members less the reference, relative to the reference.
@@ -287,7 +288,7 @@ pub struct StatisticError {
     pub spread: Option<f64>,
     /// True if the interval excludes zero; absent with one member.
     pub significant: Option<bool>,
-    /// Measured depth of the worst node \[m\]; absent where the statistic is the whole string's.
+    /// Measured depth of the worst node \[m\]; absent if the statistic is the whole string's.
     pub measured_depth: Option<f64>,
     /// All recorded nodes that have a reference.
     pub nodes: Vec<NodeStatistic>,
@@ -300,10 +301,10 @@ impl StatisticError {
     }
 }
 
-/// A statistic of one recorded node, or of the whole string, against the reference.
+/// A statistic of one recorded node, or of the whole string, compared with the reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct NodeStatistic {
-    /// Measured depth of the node \[m\]; absent where the statistic is the whole string's.
+    /// Measured depth of the node \[m\]; absent if the statistic is the whole string's.
     pub measured_depth: Option<f64>,
     /// The reference's value: length \[m\], force \[N\] or speed \[rad/s\].
     pub reference: f64,
@@ -325,18 +326,18 @@ impl NodeStatistic {
     }
 }
 
-/// Lines of the members' mean spectra against those of the reference.
+/// Lines of the members' mean spectra, compared with those of the reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct LineErrors {
-    /// Largest distance of a line from the reference's \[Hz\], of those that are there; absent where none is.
+    /// Largest distance of a line from the reference's \[Hz\], of the lines found; absent if none was found.
     pub frequency_hz: Option<f64>,
     /// Largest relative error of a line's amplitude.
     pub amplitude: f64,
-    /// Lines of the reference that are not there at half their height within 0.3 Hz.
+    /// Number of lines of the reference that are missing: not present at half their height within 0.3 Hz.
     pub missing: u32,
-    /// The reference's three strongest lines of each recorded node, as far as they reach a twentieth of its highest.
+    /// The reference's three strongest lines of each recorded node, as far as they reach a twentieth of the highest.
     pub named: Vec<NamedLine>,
-    /// Lines above a twentieth of the reference's highest of that node, which the reference does not have at half their height
+    /// Lines above a twentieth of the reference's highest of that node that the reference does not have at half their height
     /// within 0.3 Hz; at most ten of each node.
     pub spurious: Vec<SpuriousLine>,
 }
@@ -350,7 +351,7 @@ pub struct NamedLine {
     pub frequency_hz: f64,
     /// The reference's amplitude \[m\].
     pub amplitude: f64,
-    /// Frequency at which it was found \[Hz\]; absent where it is missing.
+    /// Frequency at which the line was found \[Hz\]; absent if it is missing.
     pub found_hz: Option<f64>,
     /// Relative error of the amplitude.
     pub amplitude_error: f64,
@@ -367,20 +368,20 @@ pub struct SpuriousLine {
     pub height: f64,
 }
 
-/// The cheapest way to some accuracy of a quantity.
+/// The cheapest row for an accuracy of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct Recommendation {
     /// The quantity.
     pub quantity: Quantity,
     /// Wanted relative error over the orbit window: bias and half its interval's width together.
     pub accuracy: f64,
-    /// Name of the line; absent, as all that follows, where none of the study reaches it or the references agree less well.
+    /// Name of the row; absent, like all the following, if no row of the study reaches the accuracy or the reference's methods agree less well.
     pub name: Option<String>,
     /// Method.
     pub integrator: Option<Integrator>,
     /// Step \[s\]; of an adaptive method the longest.
     pub step: Option<f64>,
-    /// Tolerance of the adaptive step; absent where it is fixed.
+    /// Tolerance of the adaptive step; absent if the step is fixed.
     pub tolerance: Option<f64>,
     /// Processor time for the scenario's own duration \[s\].
     pub cpu_time: Option<f64>,
@@ -391,10 +392,10 @@ pub struct Recommendation {
 /// Reason for which there is no study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// There is no model.
+    /// The scenario has no model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// There is no equilibrium.
+    /// The scenario has no equilibrium.
     #[error(transparent)]
     Statics(#[from] StaticsError),
     /// The explicit method's limit cannot be found.
@@ -414,9 +415,9 @@ pub struct TotalCost {
     pub limits: Vec<MeshLimit>,
     /// Error of each mesh, from coarse to fine; empty if it is not known.
     pub meshes: Vec<MeshPart>,
-    /// The cheapest that keeps to what is wanted; absent where nothing does.
+    /// The cheapest choice that meets the wanted error; absent if none does.
     pub choice: Option<TotalChoice>,
-    /// Obstacle if nothing keeps to it.
+    /// Obstacle if no choice meets it.
     pub stopped_by: Option<StoppedBy>,
     /// The recommendation in words.
     pub text: String,
@@ -427,10 +428,10 @@ pub struct TotalCost {
 pub struct MeshLimit {
     /// Measured depth of the node \[m\].
     pub measured_depth: Option<f64>,
-    /// Order that the three finest meshes show, 0.5 at least and 4 at most; absent where they do not converge monotonically, or are fewer. Then the
-    /// error of a mesh is its distance from the finest, and that of the two finest from each other.
+    /// Order of the three finest meshes, 0.5 at least and 4 at most; absent if they do not converge monotonically, or are fewer. Then the
+    /// error of a mesh is its distance from the finest, plus the distance of the two finest from each other.
     pub order: Option<f64>,
-    /// Orbit size that they tend to \[m\]; without an order that of the finest mesh.
+    /// Limit of the orbit size \[m\]; without an order that of the finest mesh.
     pub orbit_size: f64,
 }
 
@@ -441,33 +442,33 @@ pub struct MeshPart {
     pub mesh_factor: f64,
     /// Elements.
     pub elements: usize,
-    /// Estimated relative error of orbit size, at the worst node. It is known no better than the accuracy `reference`, by which the
+    /// Estimated relative error of orbit size, at the worst node. It is known no better than the accuracy `reference`, at which the
     /// meshes are run.
     pub error: f64,
     /// Processor time over that of the scenario's own mesh.
     pub cpu_ratio: f64,
 }
 
-/// A mesh with a method, and what to expect of them.
+/// A mesh with a method, and their expected error and cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 pub struct TotalChoice {
     /// Factor on the mesh's target element lengths.
     pub mesh_factor: f64,
     /// Elements.
     pub elements: usize,
-    /// Name of the line; see [`CostRow::name`].
+    /// Name of the row; see [`CostRow::name`].
     pub name: String,
     /// Method.
     pub integrator: Integrator,
     /// Step \[s\]; of an adaptive method the longest.
     pub step: f64,
-    /// Tolerance of the adaptive step; absent where it is fixed.
+    /// Tolerance of the adaptive step; absent if the step is fixed.
     pub tolerance: Option<f64>,
-    /// Contact iterations a solve at most (implicit methods).
+    /// Largest number of contact iterations a solve (implicit methods).
     pub contact_sweeps: u32,
     /// The mesh's part of the relative error of orbit size.
     pub mesh_error: f64,
-    /// The method's part: bias and half its interval's width; of fixed steps also of all finer ones of the method.
+    /// The method's part: bias and half its interval's width; for fixed steps, the largest of all finer ones of the method too.
     pub time_error: f64,
     /// Both together.
     pub whole_error: f64,
@@ -479,13 +480,13 @@ pub struct TotalChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StoppedBy {
-    /// Every mesh is off by more.
+    /// Every mesh has a larger error.
     Mesh,
-    /// Every method is off by more.
+    /// Every method has a larger error.
     Time,
     /// Both of these.
     MeshAndTime,
-    /// Some mesh and some method keep to it, but no two that go together.
+    /// Some mesh and some method meet it, but no mesh and method together.
     Sum,
     /// The mesh's part is not known.
     UnknownMesh,

@@ -1,8 +1,8 @@
-//! Lines of a report in words, and the finer ones of their method.
+//! Rows of a report in words, and the finer rows of their method.
 
 use super::results::{CostReport, CostRow};
 
-/// The line itself and, where its steps are fixed, all finer ones of its method: one that hits by chance has finer ones that miss.
+/// The row itself and, if its steps are fixed, all finer rows of its method: a row that is right by chance has finer ones that are not.
 pub(super) fn one_that_holds<'a>(
     report: &'a CostReport,
     row: &'a CostRow,
@@ -17,7 +17,7 @@ pub(super) fn one_that_holds<'a>(
     std::iter::once(row).chain(report.compared().filter(is_finer))
 }
 
-/// A line in words: its name where it has one of its own, its method, step and tolerance.
+/// A row in words: its name if it has one of its own, its method, step and tolerance.
 pub(super) fn stepping_words(row: &CostRow) -> String {
     let method = row.integrator.name();
     let mesh = if row.mesh_factor == 1.0 {

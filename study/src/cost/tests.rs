@@ -62,7 +62,7 @@ fn sized(size: f64) -> Measure {
 
 type Row = (Role, &'static str, TimeStepping, Vec<(Measure, f64)>);
 
-/// The report of lines with their members and processor times.
+/// The report of rows with their members and processor times.
 fn report_of(rows: Vec<Row>) -> CostReport {
     report_with(rows, |_| {})
 }
@@ -112,8 +112,8 @@ fn statistics_are_those_of_circles() {
     let statistic = |quantity| sized(1.0).statistic(quantity, 0);
     assert!((statistic(Quantity::OrbitSize) / size - 1.0).abs() < 1e-9);
     assert!((statistic(Quantity::TorsionalSpeed) - 2.0_f64.sqrt()).abs() < 1e-9);
-    // To second order in the orbit's size over the distance from the axis: along the radius moves u alone, half the squares,
-    // and across it lengthens the mean distance.
+    // To second order in the orbit's size over the distance from the axis: only u moves along the radius, half the squares,
+    // and motion across it lengthens the mean distance.
     assert!((statistic(Quantity::RadiusDeviation) / (size / 2.0_f64.sqrt()) - 1.0).abs() < 1e-3);
     assert!((statistic(Quantity::MeanRadius) - OFFSET - size * size / (4.0 * OFFSET)).abs() < 1e-8);
     assert_eq!(statistic(Quantity::ContactForce), 1e4);
@@ -130,11 +130,11 @@ fn an_error_is_against_the_mean_of_two_methods_that_agree() {
     let errors = report.methods[0].errors.as_ref().unwrap();
     let orbit = errors.orbit_size.as_ref().unwrap();
     assert!((orbit.bias - (1.4 / 1.002 - 1.0)).abs() < 1e-9, "{orbit:?}");
-    // One member tells nothing of confidence.
+    // One member has no confidence interval.
     assert_eq!((orbit.half_width, orbit.spread, orbit.significant), (None, None, None));
     assert_eq!(orbit.measured_depth, Some(50.0));
     assert!(errors.contact_force.as_ref().unwrap().bias.abs() < 1e-12);
-    // Its methods stand against each other.
+    // Its methods are compared with each other.
     let of_a = report.references[0].errors.as_ref().unwrap().orbit_size.as_ref().unwrap();
     assert!((of_a.bias - (1.0 / 1.004 - 1.0)).abs() < 1e-9);
     assert_eq!(report.histories_part_at, None);
@@ -162,7 +162,7 @@ fn without_agreement_there_is_no_reference_and_the_report_says_so() {
     assert!(report.recommendations.is_empty());
     let warning = "no reference exists for orbit size: the two methods differ by 5.00 %, more than 1 %";
     assert!(report.warnings.iter().any(|found| found == warning), "{:?}", report.warnings);
-    // Wider bounds are the asker's.
+    // The request may set wider bounds.
     let asked = StudyReference { size_agreement: 0.06, ..StudyReference::default() };
     let (a, b) = (sized(1.0), sized(1.05));
     let found = super::compare::agreements(&[&a], &[&b], &asked);
@@ -276,7 +276,7 @@ fn members_tell_bias_from_spread() {
     assert!((biased.half_width.unwrap() - 2.306 * 0.008_660 / size).abs() < 1e-5, "{biased:?}");
     assert!((unbiased.bias - 0.0045 / size).abs() < 1e-9);
     assert!((unbiased.nodes[0].reference_spread.unwrap() - 0.015_811 / size).abs() < 1e-6);
-    // Two per cent cannot be told with so few members: the interval counts.
+    // Two per cent cannot be resolved with so few members: the interval counts.
     let of_orbit: Vec<_> = report.recommendations[..3].iter().map(|found| found.name.as_deref()).collect();
     assert_eq!(of_orbit, [Some("draft"), None, None]);
 }
@@ -294,7 +294,7 @@ fn the_cheapest_line_within_the_wanted_error_is_recommended() {
     let report = report_of(rows);
     let chosen: Vec<_> = report.recommendations.iter().map(|found| (found.integrator, found.step)).collect();
     let alpha = |step| (Some(Integrator::GeneralizedAlpha), Some(step));
-    // 0.5 ms hits within two per cent by chance, since 0.25 ms does not; for eight both keep to it.
+    // 0.5 ms meets two per cent by chance, since 0.25 ms does not; both meet eight.
     let wanted = [alpha(5e-4), alpha(1.25e-4), (Some(Integrator::Esdirk4), Some(5e-4))];
     assert_eq!(chosen, [wanted, wanted].concat());
     // RK4 took 60 s.

@@ -1,9 +1,9 @@
 //! The cheapest mesh, method and tolerance for a whole error of orbit size.
 //!
-//! The error of a run is that of its mesh and of its steps. That of each mesh is estimated from runs on several meshes, all by the same
-//! accuracy, against the limit that they tend to (Richardson's extrapolation with the observed order, within bounds; Oberkampf and
-//! Roy 2010, "Verification and validation in scientific computing"). That of each method is measured on the scenario's own mesh, against the
-//! reference. The two are taken to add up, and a method to be off by as much on another mesh.
+//! The error of a run is the sum of those of its mesh and of its steps. The error of each mesh is estimated from runs on several meshes, all at the
+//! same accuracy, relative to their limit (Richardson's extrapolation with the observed order, within bounds; Oberkampf and
+//! Roy 2010, "Verification and validation in scientific computing"). The error of each method is measured on the scenario's own mesh, relative to the
+//! reference, and taken to be the same on another mesh.
 
 use drillsweep_scenario::{Integrator, Scenario};
 
@@ -13,17 +13,17 @@ use super::results::{
 };
 use super::row::{one_that_holds, rounded, stepping_words};
 
-/// Highest order that is believed. Interpolation between nodes is cubic, so that frequencies converge with the fourth power of the
-/// elements' length; what seems to converge faster does so by chance.
+/// Highest credible order. Interpolation between nodes is cubic, so that frequencies converge with the fourth power of the
+/// elements' length; faster convergence is by chance.
 const HIGHEST_ORDER: f64 = 4.0;
 
-/// Lowest order that is believed (as Oberkampf and Roy have it): with less the limit runs away, whatever it is.
+/// Lowest credible order (Oberkampf and Roy 2010): with less, the limit depends on any small difference.
 const LOWEST_ORDER: f64 = 0.5;
 
 /// Reason for which orbits need not converge if the wall's stiffness is per node.
 pub(super) const WALL_OF_NODES: &str = "contact stiffness and damping are per node, so a finer mesh meets a stiffer wall and need not converge; contact.law = \"per_length\" makes them per length";
 
-/// Looks for the cheapest pair of the report's meshes and methods for a whole error of `wanted`; `base` is the scenario that was run.
+/// Searches for the cheapest pair of the report's meshes and methods for a whole error of `wanted`; `base` is the scenario that was run.
 pub(super) fn total(report: &CostReport, base: &Scenario, wanted: f64) -> TotalCost {
     let of = format!("{} % of orbit size in all", rounded(100.0 * wanted));
     let mut total = TotalCost {
@@ -50,7 +50,7 @@ pub(super) fn total(report: &CostReport, base: &Scenario, wanted: f64) -> TotalC
     let methods: Vec<(&CostRow, f64)> =
         report.compared().filter_map(|row| Some((row, time_error(report, row)?))).collect();
     let pairs = total.meshes.iter().flat_map(|mesh| methods.iter().map(move |method| (mesh, method)));
-    // The explicit method's longest stable step goes with the elements' length.
+    // The explicit method's longest stable step is in proportion to the elements' length.
     let runs = |mesh: &MeshPart, row: &CostRow| row.integrator != Integrator::Rk4 || mesh.mesh_factor >= 1.0;
     let pairs = pairs.filter(|(mesh, (row, _))| runs(mesh, row));
     let choices: Vec<TotalChoice> =
@@ -135,7 +135,7 @@ fn words(report: &CostReport, choice: &TotalChoice) -> String {
     )
 }
 
-/// Doubt if meshes do not converge as extrapolation asks; nothing if they do.
+/// Doubt, in words, if meshes do not converge as extrapolation requires; empty if they do.
 fn doubt(limits: &[MeshLimit]) -> String {
     let without: Vec<_> = limits
         .iter()
@@ -168,14 +168,14 @@ fn reference_is_known(report: &CostReport, wanted: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// A line's error in time: bias and half its interval's width, and where its steps are fixed the largest of it and all finer ones of
-/// its method, since one that hits by chance is none. Absent where one of them has no known error.
+/// Error in time of a row: bias and half its interval's width; for fixed steps, the largest of it and all finer ones of
+/// its method, since a row that is right by chance does not count. Absent if one of them has no known error.
 fn time_error(report: &CostReport, row: &CostRow) -> Option<f64> {
     let bound = |row: &CostRow| Some(row.errors.as_ref()?.orbit_size.as_ref()?.bound());
     one_that_holds(report, row).map(bound).try_fold(0.0, |most, error| Some(f64::max(most, error?)))
 }
 
-/// Error of each mesh that ran, and limits of the orbit sizes; or why neither is known.
+/// Error of each mesh that ran, and limits of the orbit sizes; or the reason for which neither is known.
 fn mesh_parts(report: &CostReport, base: &Scenario) -> Result<(Vec<MeshLimit>, Vec<MeshPart>), String> {
     if wall_depends_on_mesh(base) {
         return Err(WALL_OF_NODES.to_owned());
@@ -194,7 +194,7 @@ fn mesh_parts(report: &CostReport, base: &Scenario) -> Result<(Vec<MeshLimit>, V
     let mut limits = Vec::new();
     let agreement = report.agreement(Quantity::OrbitSize).filter(|agreement| agreement.has_reference);
     for node in 0..meshes.iter().map(|(_, nodes)| nodes.len()).min().unwrap_or(0) {
-        // Of a node without a reference nothing is said in time either.
+        // For a node without a reference no error in time is reported either.
         let is_known =
             agreement.and_then(|agreement| agreement.nodes.get(node)).is_none_or(|n| n.has_reference);
         if !is_known {
@@ -217,7 +217,7 @@ fn mesh_parts(report: &CostReport, base: &Scenario) -> Result<(Vec<MeshLimit>, V
     Ok((limits, parts.collect()))
 }
 
-/// The limit of one node's orbit sizes, from coarse to fine, and how far each is off, relative to that limit; absent with fewer
+/// The limit of one node's orbit sizes, from coarse to fine, and the error of each relative to that limit; absent with fewer
 /// than two meshes.
 fn node_errors(factors: &[f64], values: &[f64]) -> Option<(MeshLimit, Vec<f64>)> {
     let [.., before, finest] = *values else { return None };
@@ -234,8 +234,8 @@ fn node_errors(factors: &[f64], values: &[f64]) -> Option<(MeshLimit, Vec<f64>)>
     Some((MeshLimit { measured_depth: None, order, orbit_size }, errors.collect()))
 }
 
-/// The limit L and order p of values q = L + C h^p at three lengths h, falling; where p is at its bounds, 0.5 and 4, the two finest
-/// values determine the limit. Absent where the values do not tend monotonically to a positive limit.
+/// The limit L and order p of values q = L + C h^p at three lengths h, falling. If p is at its bounds, 0.5 and 4, the two finest
+/// values determine the limit. Absent if the values do not tend monotonically to a positive limit.
 fn limit(h: [f64; 3], q: [f64; 3]) -> Option<(f64, f64)> {
     let [coarse, middle] = [h[0] / h[2], h[1] / h[2]];
     let [first, second] = [q[0] - q[1], q[1] - q[2]];
@@ -250,7 +250,7 @@ fn limit(h: [f64; 3], q: [f64; 3]) -> Option<(f64, f64)> {
     }
     let (mut low, mut high) = (LOWEST_ORDER, HIGHEST_ORDER);
     if ratio < of_order(HIGHEST_ORDER) {
-        // As often as a double has digits.
+        // As many times as a double has digits.
         for _ in 0..f64::MANTISSA_DIGITS {
             let order = 0.5 * (low + high);
             if of_order(order) < ratio { low = order } else { high = order }
@@ -287,7 +287,7 @@ mod tests {
     fn an_order_out_of_its_bounds_is_not_believed() {
         let (found, order) = limit([2.0, 1.0, 0.5], values([2.0, 1.0, 0.5], 1.0, 0.01, 6.0)).unwrap();
         assert_eq!(order, 4.0);
-        // Of order 4 the finest is off by a fifteenth of its distance from the one before: further than of order 6.
+        // At order 4 the error of the finest is a fifteenth of its distance from the one before: more than at order 6.
         let [_, middle, fine] = values([2.0, 1.0, 0.5], 1.0, 0.01, 6.0);
         assert!((found - (fine - (middle - fine) / 15.0)).abs() < 1e-15);
         assert_eq!(limit([2.0, 1.0, 0.5], [1.0; 3]), Some((1.0, 4.0)), "nothing is left to converge");

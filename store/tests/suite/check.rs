@@ -29,8 +29,8 @@ pub(crate) async fn a_whole_store_has_no_problems_and_damage_to_blobs_is_named<E
     assert_eq!(problems.len(), 3, "{problems:?}");
     let of = |blob: &String| problems.iter().find(|problem| problem.contains(blob.as_str())).unwrap();
     assert!(of(&blobs[0]).contains("not found"), "{problems:?}");
-    assert!(of(&blobs[1]).contains("not what its name says"), "{problems:?}");
-    assert!(of(&blobs[2]).contains("not what its name says"), "{problems:?}");
+    assert!(of(&blobs[1]).contains("does not match its hash"), "{problems:?}");
+    assert!(of(&blobs[2]).contains("does not match its hash"), "{problems:?}");
     // Nor is it handed out.
     assert!(matches!(store.blobs().get(blobs[1].parse().unwrap()).await, Err(StoreError::BlobDamaged(_))));
 }

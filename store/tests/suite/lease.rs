@@ -52,7 +52,8 @@ pub(crate) async fn a_claim_finds_a_lease_that_ended_after_the_last_look<E: Engi
 }
 
 pub(crate) async fn open_work_of_an_owner_ends_with_its_points<E: Engine>() {
-    let store = E::new().open().await;
+    let engine = E::new();
+    let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2, 3])).await;
     assert_eq!(store.open_work("anne").await.unwrap(), 3);
     assert_eq!(store.open_work("bert").await.unwrap(), 0);

@@ -1,4 +1,4 @@
-//! The time loop lives in the memory that it was given at its start.
+//! The time loop allocates no memory after its start.
 
 use allocation_counter::measure;
 use drillsweep_scenario::{Accuracy, Integrator, OrbitWindow, Snapshots, TimeStepping, TimeWindow, preset};

@@ -1,4 +1,4 @@
-//! Equilibria next to the loads that buckle a string, and of strings that sag by metres, against beam theory.
+//! Equilibria next to the loads that buckle a string, and of strings that sag by metres, compared with beam theory.
 
 use std::f64::consts::PI;
 
@@ -256,8 +256,8 @@ fn a_pulled_string_carries_its_weight_and_the_pull() {
     assert!((w / stretch - 1.0).abs() < 1e-9, "{w} m for {stretch} m");
 }
 
-/// The largest force or moment that the equations of the documents leave unbalanced at a node of a scene at rest, over the largest that
-/// acts on one: wall and friction by (11) and (36), drag by the eccentricity where the string lies.
+/// Largest unbalanced force or moment at a node of a scenario at rest, by the equations of the documents, over the largest force that
+/// acts on one: wall and friction by (11) and (36), drag by the eccentricity at the string's position.
 fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
     let mud = model.scenario.mud.as_ref();
     for (e, element) in model.elements.iter().enumerate().filter(|_| model.effects.mud_drag) {

@@ -428,7 +428,7 @@ fn rotation_factor_becomes_exact_in_a_narrow_annulus() {
 }
 
 /// Power law above 1: `tau_w = K (8 U / D (3 n + 1) / (4 n))^n` in a pipe and `K (12 U / D_h (2 n + 1) / (3 n))^n` in a slot (Metzner and
-/// Reed 1955; API RP 13D). Rotation raises the gradient of such a fluid; the factor, which stands for what it eases, stays 1.
+/// Reed 1955; API RP 13D). Rotation raises the gradient of such a fluid; the factor, which only lowers it, stays 1.
 #[test]
 fn shear_thickening_fluid_obeys_the_power_law_and_is_not_eased_by_rotation() {
     for flow_index in [1.2, 1.5, 2.0] {

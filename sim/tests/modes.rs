@@ -627,7 +627,7 @@ fn roots(function: impl Fn(f64) -> f64, to_hz: f64) -> Vec<f64> {
     bisected.filter(|hz| *hz < to_hz).collect()
 }
 
-/// Nodes by themselves on springs, all with one frequency.
+/// Independent nodes on springs, all with one frequency.
 fn equal_oscillators(nodes: usize) -> Pencil {
     let zero = BlockTridiagonal::zeros(nodes);
     let (mut mass, mut stiffness) = (zero.clone(), zero.clone());

@@ -1,4 +1,4 @@
-//! Torsional modes that velocity-weakening friction feeds: the chain of shafts against all modes together, and what damping does to them.
+//! Torsional modes that velocity-weakening friction excites: the chain of shafts compared with all modes together, and the effect of damping.
 
 use std::f64::consts::PI;
 

@@ -11,7 +11,7 @@ use drillsweep_sim::string::StringMesh;
 /// Samples of a run.
 const SAMPLES: f64 = 40.0;
 
-/// Elements at most, before gauges and masses add nodes of their own.
+/// Largest number of elements, before gauges and masses add nodes of their own.
 const MOST_ELEMENTS: f64 = 120.0;
 
 /// Scenario `index` of a seed.
@@ -271,22 +271,22 @@ impl Draw {
         z ^ (z >> 31)
     }
 
-    /// In \[0, 1).
+    /// A number in \[0, 1).
     fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Evenly in \[low, high).
+    /// A number in \[low, high), uniform.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// Evenly by the logarithm in \[low, high).
+    /// A number in \[low, high), uniform in its logarithm.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// Zero with a probability, else by the logarithm.
+    /// Zero with a probability, otherwise uniform in its logarithm.
     fn or_zero(&mut self, zero: f64, low: f64, high: f64) -> f64 {
         let value = self.log(low, high);
         if self.chance(zero) { 0.0 } else { value }

@@ -1,4 +1,4 @@
-//! The error that a result tells of its steps, against the true one, over whole runs through stick-slip and impacts.
+//! The error of its steps that a result states, compared with the true one, over whole runs through stick-slip and impacts.
 //! Run: `cargo bench -p drillsweep-study --bench error_estimate` (some ten minutes)
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Scenario};

@@ -1,4 +1,5 @@
-//! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and what rests on it converges.
+//! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and the position of a string at rest on it
+//! converges.
 
 use drillsweep_scenario::{
     Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, StartFriction, SurveyStation,
@@ -70,7 +71,7 @@ impl Resting {
 
     /// The same without a mesh: (E I y'')'' = w - kappa max(0, y - j0), clamped above, free below. From the touchdown at a on, y - j0 is
     /// w/kappa plus a wave that decays away from it (the free end of a pipe under uniform load is as straight as its middle);
-    /// above it y is a polynomial of order four. Deflection, rotation, moment and shear force continue at a, the deflection being j0: linear
+    /// above it y is a polynomial of order four. Deflection, rotation, moment and shear force are continuous at a, the deflection being j0: linear
     /// equations for the rest, and a by bisection. `shear_flexibility` is 1/(G S_r) of a Timoshenko beam, 0 of an Euler-Bernoulli one.
     fn on_an_elastic_wall(beam: &Beam, kappa: f64, shear_flexibility: f64) -> (Self, f64) {
         let &Beam { bending, weight, clearance, length } = beam;
@@ -202,9 +203,9 @@ fn pipe_on_a_wall_by_length_converges_with_the_fourth_power_of_the_elements() {
     }
 }
 
-/// Orbit sizes \[m\] of the pipe on its low side at some depths, where it turns with a mass off its axis: in the free span, by the touchdown, and
-/// on the wall. Damping has taken what is not the mass' doing before the window begins. The wall has no damper: as (11) has it, a damper begins
-/// with half its force at once where a node arrives, which leaves a scatter of half a per cent that falls with the mesh by the first order only.
+/// Orbit sizes \[m\] of the pipe on its low side at some depths, if it turns with a mass off its axis: in the free span, by the touchdown, and
+/// on the wall. Damping has removed all motion but that by the mass before the window begins. The wall has no damper: by (11), a damper begins
+/// with half its force at once when a node arrives, which leaves a scatter of half a per cent that falls with the mesh by the first order only.
 fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
     orbits_of(&turning_pipe(elements, 4.0))
 }

@@ -1,4 +1,4 @@
-//! The hard scenes that ship as presets, each held to something that does not come from the run itself: an analytic value, a published
+//! The hard scenarios that ship as presets, each compared with a value that does not come from the run itself: an analytic one, a published
 //! one, a bound of the physics, or another method.
 
 use std::f64::consts::{PI, TAU};
@@ -17,7 +17,7 @@ use drillsweep_sim::validation::validate;
 use drillsweep_study::cost::Measure;
 use drillsweep_study::finer::{Verdict, ask};
 
-/// A hard scene, run.
+/// A hard scenario with its run.
 struct Scene {
     model: Model,
     equilibrium: Equilibrium,
@@ -25,7 +25,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// Runs a preset and checks what holds for every scene: finite numbers, a ledger far within its bound, and no node deeper in the wall
+    /// Runs a preset and checks the properties of every scenario: finite numbers, a ledger far within its bound, and no node deeper in the wall
     /// than its largest force can push it.
     fn run(name: &str) -> Self {
         Self::of(&preset(name).expect("shipped preset"))
@@ -89,7 +89,7 @@ impl Scene {
         elements.sum()
     }
 
-    /// Friction torque that the wall exerts at rest, at the most \[N m\].
+    /// Largest friction torque that the wall exerts at rest \[N m\].
     fn friction_torque(&self) -> f64 {
         let nodes = self.model.mesh.nodes.iter().zip(&self.equilibrium.normal_force);
         let arm: f64 = nodes.map(|(node, force)| force * node.contact_radius).sum();
@@ -119,7 +119,7 @@ fn with_method(name: &str, duration: f64, integrator: Integrator, step: f64) -> 
     scenario
 }
 
-/// Runs a scene over a shorter time by ESDIRK4 and by generalized-alpha: two methods with nothing in common but the model agree.
+/// Runs a scenario over a shorter time by ESDIRK4 and by generalized-alpha: two methods with nothing in common but the model agree.
 fn methods_agree(name: &str, duration: f64, largest_distance: f64) {
     let a = Scene::of(&with_method(name, duration, Integrator::Esdirk4, 5e-4));
     let b = Scene::of(&with_method(name, duration, Integrator::GeneralizedAlpha, 1.25e-4));
@@ -140,7 +140,7 @@ fn every_hard_scene_ships_with_its_reason() {
     }
 }
 
-/// Scenes that are asked over a part of their time, and that \[s\]: the grown torsion of all of it takes half a minute.
+/// Scenarios that are checked over a part of their time, and that \[s\]: the grown torsion of all of it takes half a minute.
 const ASKED_OVER: [(&str, f64); 1] = [("hard/high-frequency-torsion", 0.5)];
 
 #[test]
@@ -192,7 +192,7 @@ fn tight_gauge_holds_its_nodes() {
     methods_agree("hard/tight-gauge", 0.05, 0.02);
 }
 
-/// A scene whose gauges have next to no play in a wall of 1e9 N/m: turning or at rest, with friction or without, with the wall's damping or
+/// A scenario whose gauges have almost no clearance in a wall of 1e9 N/m: turning or at rest, with friction or without, with the wall's damping or
 /// without, by a method.
 fn without_play(
     name: &str,

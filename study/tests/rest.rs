@@ -1,4 +1,4 @@
-//! Strings that nothing moves: they stay where they are, at a cost like that of those that move.
+//! Strings without excitation: they stay at rest, at a cost like that of strings that move.
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
@@ -22,7 +22,7 @@ fn scene(name: &str, change: impl Fn(&mut Scenario)) -> Scenario {
     scenario
 }
 
-/// A run from the equilibrium, or as a disturbed member of an ensemble, with its ratio of the energy that is left over.
+/// A run from the equilibrium, or as a disturbed member of an ensemble, with the ratio of its residual energy.
 fn run(scenario: &Scenario, member: u32) -> (Records, Option<f64>) {
     let model = Model::new(scenario).expect("has a model");
     let equilibrium = Equilibrium::find(&model).expect("rests");

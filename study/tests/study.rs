@@ -1,4 +1,4 @@
-//! Cost studies from end to end: what is run, what the two methods of the reference make of it, what is told.
+//! Cost studies from end to end: their runs, their reference from two methods, and their report.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 

@@ -121,7 +121,7 @@ fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
             assert!(history.u.iter().any(|&u| u != history.u[0]));
         }
         let last = records.energy.last().unwrap();
-        // Without friction the unbalance is what drives; the residual is the method's own error.
+        // Without friction the unbalance drives the motion; the residual is the method's own error.
         assert!(last.residual.abs() < 0.02 * last["work_unbalance"].abs().max(last.kinetic), "{last:?}");
     }
 }

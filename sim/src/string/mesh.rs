@@ -348,7 +348,7 @@ mod tests {
     fn a_place_inside_a_stretch_splits_it() {
         let mut scenario = paper();
         let before = StringMesh::new(&scenario).unwrap().elements.len();
-        // 2.3 m in the 4.0 m stretch: 2.3 m in 2 and 1.7 m in 2 instead of 3.
+        // 2.3 m in the 4.0 m part: 2.3 m in 2 and 1.7 m in 2 instead of 3.
         let mass = UnbalanceMass { measured_depth: 2.3, mass: 1.0, radius: 0.05, phase_deg: 90.0 };
         scenario.string.unbalance.push(mass);
         let mesh = StringMesh::new(&scenario).unwrap();
@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn a_place_next_to_a_boundary_moves_to_it() {
         let mut scenario = paper();
-        // Within 5 % of 1.5 m of the end of the first stretch, from either side; and just beyond it.
+        // Within 5 % of 1.5 m of the end of the first part, from either side; and just beyond it.
         scenario.string.gauges.push(Gauge { measured_depth: 3.93, clearance: 0.01 });
         let snapped = StringMesh::new(&scenario).unwrap();
         assert_eq!(snapped.elements.len(), 296);

@@ -50,7 +50,7 @@ pub(crate) fn random_scenario(seed: u64, index: u64) -> Scenario {
         // The rest as in the base case: one run of one point.
         ..base
     };
-    // A gauge may not be wider than what the body leaves of the hole where it stands.
+    // A gauge may not be wider than the clearance of the body at its place.
     if let Ok(mesh) = StringMesh::new(&scenario) {
         for gauge in &mut scenario.string.gauges {
             let node = mesh.nearest_node(gauge.measured_depth);
@@ -196,7 +196,7 @@ fn draw_contact(draw: &mut Draw) -> ContactLaw {
         friction_reference_speed: draw.log(1e-3, 0.3),
     };
     if draw.chance(0.3) {
-        // What a node has belongs to this length.
+        // Values of a node belong to this length.
         let length = draw.log(0.1, 10.0);
         law.law = WallLaw::PerLength;
         (law.stiffness_per_length, law.damping_per_length) =

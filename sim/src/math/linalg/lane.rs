@@ -47,13 +47,13 @@ pub trait Lane:
     /// The magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
 
-    /// Lanes where `self < other`.
+    /// Lanes with `self < other`.
     fn less_than(self, other: Self) -> Self::Mask;
 
     /// `if_true` in the lanes of the mask, `if_false` in the others.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
 
-    /// Lanes where `self > other`.
+    /// Lanes with `self > other`.
     #[inline(always)]
     fn greater_than(self, other: Self) -> Self::Mask {
         other.less_than(self)

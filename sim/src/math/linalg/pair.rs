@@ -215,7 +215,7 @@ const fn block_count<const D: usize>(last_couples: bool) -> usize {
     if last_couples { D * D } else { D * D - 2 * (D - 1 - BENDING_ROTATIONS) }
 }
 
-/// One entry of four blocks from `first` on; zeros where there is no block.
+/// One entry of four blocks from `first` on; zeros without a block.
 fn side_by_side<const D: usize>(
     blocks: &[Block<D>],
     start: usize,

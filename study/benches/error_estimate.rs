@@ -83,7 +83,7 @@ fn compare(
             tally.unknown += 1;
             continue;
         };
-        // What the two methods of the reference disagree by is no error of the run.
+        // The disagreement of the reference's two methods is no error of the run.
         let is_covered = error[0] <= estimate + agreement[0] && error[1] <= estimate + agreement[1];
         *(if is_covered { &mut tally.covered } else { &mut tally.missed }) += 1;
         tally.ratios.push(estimate / error[0].max(error[1]));

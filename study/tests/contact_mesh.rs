@@ -103,7 +103,7 @@ impl Resting {
             let gap = line * a.powi(3) / 6.0 + 0.5 * d2 * a * a + d1 * a - (wave * even[0] + b * odd[0]);
             (gap, d1, d2, b)
         };
-        // A wall that gives way is reached below where a rigid one would be left: the bracket is about that.
+        // A soft wall is reached below the place at which a rigid one would be left: the bracket is about that.
         let rigid = (72.0 * bending * clearance / weight).powf(0.25);
         let (mut low, mut high) = (0.5 * rigid, 1.5 * rigid);
         let sign = continued(low).0.signum();
@@ -245,7 +245,7 @@ fn orbits_of(scenario: &Scenario) -> Vec<f64> {
 
 #[test]
 fn small_orbits_are_those_of_the_linear_response_to_the_unbalance() {
-    // A tenth of the mass, so that the string stays on the wall where it rests.
+    // A tenth of the mass, so that the string stays on the wall at its place of rest.
     let mut scenario = turning_pipe(60, 0.4);
     scenario.statics.friction = StartFriction::Sliding;
     let model = Model::new(&scenario).expect("has a model");
@@ -314,7 +314,7 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     let (mut worst, mut recorded) = (0.0_f64, 0.0_f64);
     for (i, (node, x)) in model.mesh.nodes.iter().zip(&equilibrium.displacement).enumerate() {
         let nearest = fine_model.mesh.nearest_node(node.measured_depth);
-        // The stretch above the first joint is cut into parts of other lengths.
+        // The part above the first joint is cut into elements of other lengths.
         if (fine_model.mesh.nodes[nearest].measured_depth - node.measured_depth).abs() > 1e-9 {
             continue;
         }

@@ -64,7 +64,7 @@ fn a_string_at_rest_stays_there_at_the_cost_of_a_moving_one() {
         (scenario.operation.weight_on_bit, scenario.operation.torque_on_bit) = (0.0, 0.0);
         scenario.effects.set(Effect::Unbalance, Switch::Off);
     });
-    // The last one is a member of an ensemble, which starts a micrometre beside its equilibrium.
+    // The last one is a member of an ensemble, which starts a micrometre from its equilibrium.
     for (scenario, member, farthest) in
         [(&on_wall, 0, 1e-8), (&turning, 0, 1e-8), (&hanging, 0, 0.0), (&hanging, 1, 1e-5)]
     {
@@ -85,7 +85,7 @@ fn a_string_at_rest_stays_there_at_the_cost_of_a_moving_one() {
             }
         }
         assert!(drift <= farthest, "{name}: {drift} m or rad");
-        // Where friction sticks, sweeps over contacts converge with half the step only.
+        // If friction sticks, contact iterations converge with half the step only.
         let (effort, expected) = (&records.effort, &moving.effort);
         assert_eq!((effort.rejected_steps, effort.unresolved_steps), (0, 0), "{name}: {effort:?}");
         assert!(effort.steps <= 2 * expected.steps, "{name}: {effort:?} {expected:?}");

@@ -32,7 +32,7 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
     let captures = |run: &WholeRun| run.records.contacts.iter().any(|node| node.capture_count > 0);
     assert!(captures(&fine), "{name}: nothing sticks");
     let mut failures = Vec::new();
-    // A reference exists where two methods agree within a third of the tightest promise.
+    // A reference exists if two methods agree within a third of the tightest bound.
     let agreement = apart(&fine, &rk4);
     if !(agreement[0] <= 1e-3 && agreement[1] <= 1e-2 / 3.0) {
         failures.push(format!("{name}: no reference, methods are {agreement:.5?} apart"));

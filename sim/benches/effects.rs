@@ -1,4 +1,4 @@
-//! Cost of each effect in the run in time of the 200 m case, and saving by `auto` if a scene calls for less.
+//! Cost of each effect in the run in time of the 200 m string, and saving by `auto` if a scenario needs fewer effects.
 //! Run: `cargo bench -p drillsweep-sim --bench effects`
 
 use divan::Bencher;
@@ -31,7 +31,7 @@ const SWITCHED: [Effect; 16] = [
     Effect::AxialMotion,
 ];
 
-/// Scenes that call for less and less.
+/// Scenarios that need fewer and fewer effects.
 const SCENES: [&str; 5] = ["as it is", "dry", "frictionless", "straight", "straight and frictionless"];
 
 fn main() {

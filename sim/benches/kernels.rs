@@ -1,4 +1,4 @@
-//! The block-tridiagonal kernels and the contact law at the size of the 200 m case: 296 free nodes.
+//! The block-tridiagonal kernels and the contact law at the size of the 200 m string: 296 free nodes.
 //! Run: `cargo bench -p drillsweep-sim --bench kernels`
 
 use std::hint::black_box;
@@ -47,7 +47,7 @@ fn multiply_two(bencher: Bencher) {
     });
 }
 
-/// Of five stages.
+/// Skew form of five stages.
 #[divan::bench]
 fn skew_forms(bencher: Bencher) {
     let skew = SkewPart::new(&matrix(0.1), 0.0);

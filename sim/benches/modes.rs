@@ -1,4 +1,4 @@
-//! The modes of the 200 m case, and the verdict on its stability.
+//! The modes of the 200 m string, and the verdict on its stability.
 //! Run: `cargo bench -p drillsweep-sim --bench modes`
 
 use divan::Bencher;

@@ -1,4 +1,4 @@
-//! Cost of one time step of the 200 m case, next to the limits of the machine's caches and arithmetic.
+//! Cost of one time step of the 200 m string, next to the limits of the machine's caches and arithmetic.
 //! Run: `cargo bench -p drillsweep-sim --bench step`
 //!
 //! Every figure is the shortest of several repeats in the same process, so that ratios hold on a shared machine.
@@ -160,7 +160,7 @@ impl Matrices {
         self.mass.rows()
     }
 
-    /// As a run does it.
+    /// Measures the kernels as a run uses them.
     fn kernels(&self) -> Kernels {
         let pair = MatrixPair::<Symmetric>::new(&self.mass, &self.damping);
         let load = NodalField::from_nodes(&self.load);
@@ -213,7 +213,7 @@ fn timed(work: impl FnOnce()) -> f64 {
     processor_time() - started
 }
 
-/// Bytes a second that one core reads from a block of memory of so many bytes, over and over.
+/// Bytes a second that one core reads from a block of memory of `bytes` bytes, repeatedly.
 fn stream(bytes: usize) -> f64 {
     let values: Vec<[Four; 8]> = vec![[Four::splat(1.0); 8]; bytes / 256];
     let time = (0..50).map(|_| {

@@ -1,4 +1,4 @@
-//! The simulation without service and files: a number of steps of the paper's 200 m case by one method, then where node 49 is.
+//! The simulation without service and files: a number of steps of the paper's 200 m string by one method, then the position of node 49.
 //! Run: `cargo run -p drillsweep-sim --example steps -- esdirk4 100`
 //!
 //! `tests/test_instructions.py` counts the instructions of its steps.

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Shared between a run and those that observe it. A run looks at it once every recording interval.
+/// Shared between a run and its observers. A run reads it once every recording interval.
 ///
-/// Several runs that are watched as one each take a [`Control::part`]: what is asked of one is asked of all, and their
+/// Several runs that are watched as one each take a [`Control::part`]: a request to one is a request to all, and their
 /// simulated times add up.
 #[derive(Debug, Default)]
 pub struct Control {
@@ -25,13 +25,13 @@ struct Shared {
 type Observer = Box<dyn Fn(&Control, f64) + Send + Sync>;
 
 impl Control {
-    /// A handle that asks for nothing.
+    /// A handle without requests.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A handle whose runs call `observer` with their simulated time \[s\] where they could be suspended, ten times a second
-    /// of simulated time, and go on when it returns: to stop a run at a certain time, or to hold it there.
+    /// A handle whose runs call `observer` with their simulated time \[s\] whenever they could be suspended, ten times a second
+    /// of simulated time, and continue when it returns. It can stop a run at a certain time, or hold it there.
     pub fn observed_by(observer: impl Fn(&Control, f64) + Send + Sync + 'static) -> Self {
         let shared = Shared { observer: Some(Box::new(observer)), ..Shared::default() };
         Self { shared: Arc::new(shared), own_time: AtomicU64::default() }
@@ -42,12 +42,12 @@ impl Control {
         Self { shared: self.shared.clone(), own_time: AtomicU64::default() }
     }
 
-    /// Asks the run to end without a result.
+    /// Requests that the run end without a result.
     pub fn cancel(&self) {
         self.shared.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Asks the run to end with a checkpoint from which it can go on.
+    /// Requests that the run end with a checkpoint from which it can continue.
     pub fn suspend(&self) {
         self.shared.suspend.store(true, Ordering::Relaxed);
     }
@@ -67,7 +67,7 @@ impl Control {
         f64::from_bits(self.shared.simulated_time.load(Ordering::Relaxed))
     }
 
-    /// Tells the observer, if there is one, that this handle's run has come to a time \[s\] at which it could be suspended.
+    /// Notifies the observer, if there is one, that this handle's run has come to a time \[s\] at which it could be suspended.
     pub(crate) fn reach(&self, simulated_time: f64) {
         if let Some(observer) = &self.shared.observer {
             observer(self, simulated_time);

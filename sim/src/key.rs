@@ -1,4 +1,4 @@
-//! Canonical JSON of a scenario, which keys of results hash.
+//! Canonical JSON of a scenario, from which keys of results are hashed.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::force::effect::active_effects;
 
-/// Canonical JSON (RFC 8785) of the inputs that decide the numbers of a run: two scenarios have the same text exactly if they request the
+/// Canonical JSON (RFC 8785) of the inputs that determine the numbers of a run: two scenarios have the same text exactly if they request the
 /// same numbers, however they are written.
 ///
 /// It is the scenario without its `name`, with the accuracy as integrator, step and promise, the material of every section and tool joint,
@@ -21,8 +21,8 @@ pub fn canonical_json(scenario: &Scenario) -> String {
     CanonicalJson::default().of(scenario)
 }
 
-/// [`canonical_json`] of scenarios one after the other: sections that do not differ from those of the scenario before are not written again, so that a
-/// point of a sweep costs its changes.
+/// [`canonical_json`] of scenarios one after the other. Sections equal to those of the scenario before are not written again, so that a
+/// point of a sweep costs its changes only.
 #[derive(Debug, Default)]
 pub struct CanonicalJson {
     last: Option<(Decided, [Option<String>; SECTIONS.len()])>,
@@ -70,9 +70,9 @@ struct Decided {
 /// A section of a scenario.
 struct Section {
     name: &'static str,
-    /// True if two scenarios have the same section: of all that its value depends on.
+    /// True if all values that the section depends on are the same in two scenarios.
     is_same: fn(&Decided, &Scenario, &ActiveEffects) -> bool,
-    /// Its value with all that follows from the scenario written out.
+    /// Its value with all values that follow from the scenario written out.
     value: fn(&Scenario, &ActiveEffects) -> Value,
 }
 
@@ -93,7 +93,7 @@ impl Section {
     }
 }
 
-/// Section that is the field of its name.
+/// Section that is the field of the same name.
 macro_rules! as_it_is {
     ($field:ident) => {
         Section {
@@ -176,7 +176,7 @@ fn recording(scenario: &Scenario) -> Value {
     value(&recording)
 }
 
-/// String of which every section and tool joint has its material, in place of one of its own.
+/// String with a material in every section and tool joint, in place of one of its own.
 fn string(scenario: &Scenario) -> Value {
     let mut string = scenario.string.clone();
     for section in &mut string.sections {
@@ -191,7 +191,7 @@ fn string(scenario: &Scenario) -> Value {
     Value::Object(string)
 }
 
-/// Values that a part of a document has where it is absent.
+/// Default values of absent parts of a document.
 #[derive(Debug, Default)]
 struct Defaults {
     /// Value of the part itself if it is absent; `None` if it is required.
@@ -388,7 +388,7 @@ mod tests {
         for section in &mut other.string.sections {
             section.material = Some(steel);
         }
-        // Tool joints follow their section, and nothing is left of the string's own.
+        // Tool joints follow their section, and the string's own material is not used.
         other.string.material.density = 1.0;
         assert_eq!(canonical_json(&other), bytes);
         let joint = other.string.sections[1].tool_joint.as_mut().unwrap();
@@ -523,7 +523,7 @@ mod tests {
         sample.insert("drive".to_owned(), with_drive.clone());
         let sample: Later<Drive> = serde_json::from_value(Value::Object(sample)).unwrap();
         let mut defaults = Defaults::of(&sample);
-        // The new section alone: what scenarios have is the other one's.
+        // The new section alone: all others have the defaults of scenarios.
         defaults.fields.extend(Defaults::of(&with_every_section()).fields);
         let later = |more: Value| {
             let mut written = scenario.clone();

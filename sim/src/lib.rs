@@ -2,8 +2,8 @@
 //!
 //! A [scenario](drillsweep_scenario) becomes a [`Model`](solve::model::Model): mesh, and matrices of its active effects. The model has an
 //! [`Equilibrium`](solve::statics::Equilibrium) with a hydraulic profile ([`force::mud`]); from there a
-//! [`Transient`](solve::run::Transient) yields records, from which orbits and full spectra are computed ([`math::signal`]). Five storeys hold it,
-//! each above those that it uses: [`math`], [`string`], [`force`], [`solve`], [`validation`].
+//! [`Transient`](solve::run::Transient) yields records, from which orbits and full spectra are computed ([`math::signal`]). The crate has five
+//! layers, each above those that it uses: [`math`], [`string`], [`force`], [`solve`], [`validation`].
 //!
 //! ```
 //! use drillsweep_sim::solve::model::Model;
@@ -15,7 +15,7 @@
 //! let equilibrium = Equilibrium::find(&model)?;
 //! // Tension at the bit is the weight on bit.
 //! assert!((equilibrium.tension.last().unwrap() - scenario.operation.weight_on_bit).abs() < 100.0);
-//! // Friction at the wall feeds the lowest torsional mode: stick-slip.
+//! // Friction at the wall excites the lowest torsional mode: stick-slip.
 //! let found = modes(&model, &equilibrium, &ModeSearch { to_hz: 2.5, ..ModeSearch::default() })?;
 //! let growing = found.modes.iter().find(|mode| mode.growth_rate > 0.0).unwrap();
 //! assert!((growing.frequency_hz - 2.16).abs() < 0.01);

@@ -1,4 +1,4 @@
-//! The time loop lives in the memory that it was given at its start.
+//! The time loop allocates no memory after its start.
 
 use allocation_counter::measure;
 use drillsweep_scenario::{Accuracy, Integrator, OrbitWindow, Snapshots, TimeStepping, TimeWindow, preset};
@@ -25,7 +25,7 @@ fn steps_allocate_nothing() {
             scenario.duration = duration;
             scenario.accuracy = Accuracy::Explicit(stepping);
             scenario.recording.spectrum_windows = Some(Vec::new());
-            // The state that a twin starts from is kept once, at the start of the window, and what is judged of the window is the same.
+            // The state from which a twin starts is kept once, at the start of the window, and the verdict on the window is the same.
             let window = TimeWindow { from: 0.0, to: 0.1 };
             scenario.recording.orbit_window = Some(OrbitWindow::Fixed(window));
             scenario.recording.snapshots = Some(Snapshots { rate_hz: 50.0, window: None });
@@ -66,7 +66,7 @@ fn memory_grows_with_the_string_and_not_with_the_steps() {
         .bytes_max;
         (nodes as f64, bytes as f64)
     };
-    // What a run of the base case needs at most, with its model: 40 KB a node.
+    // Largest memory of a run of the base case, with its model: 40 KB a node.
     let (nodes, bytes) = peak(1.0, 0.05);
     assert!(bytes < 40e3 * nodes, "{} B a node", bytes / nodes);
     let (more_nodes, more_bytes) = peak(0.25, 0.05);

@@ -104,7 +104,7 @@ fn gyroscopic_effect_raises_forward_and_lowers_backward_whirl() {
     };
     let (coarse, fine) = (errors(12), errors(24));
     for (coarse, fine) in [(coarse.0, fine.0), (coarse.1, fine.1)] {
-        // Second order at least; what is left is far below the split itself.
+        // Second order at least; the remainder is far below the split itself.
         assert!(coarse.abs() / fine.abs() > 3.5, "{coarse} {fine}");
     }
     let split = expected_forward - expected_backward;

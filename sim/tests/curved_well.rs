@@ -270,8 +270,8 @@ fn tension_in_an_arc_is_a_load_along_the_element() {
     let curvature = (7.5_f64 / 30.0).to_radians();
     for element in &model.elements {
         let length = element.chord.length;
-        // A load w in the plane of v has the end moments -+ w l^2 / 12 about -e1, which T kappa needs in addition to what the chords' directions
-        // make of T: on the left-hand side, loads are negative.
+        // A load w in the plane of v has the end moments -+ w l^2 / 12 about -e1, which T kappa needs in addition to the forces of T by the chords'
+        // directions: on the left-hand side, loads are negative.
         let moment = curvature * length * length / 12.0;
         let load = element.load_of_slopes(1.0, 0.0);
         let small = 1e-3 * moment;

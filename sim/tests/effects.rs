@@ -1,4 +1,4 @@
-//! Only the effects that a scene calls for: what `auto` leaves out changes no number.
+//! Only the effects that a scenario needs: effects that `auto` omits change no number.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
@@ -32,7 +32,7 @@ fn without_friction(scenario: &mut Scenario) {
     (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
 }
 
-/// A finished run and how many degrees of freedom a node had in it.
+/// A finished run and its number of degrees of freedom of a node.
 fn run(scenario: &Scenario) -> (Records, usize) {
     let model = Model::new(scenario).unwrap();
     let transient = Transient::new(&model, &Equilibrium::find(&model).unwrap()).unwrap();
@@ -121,7 +121,7 @@ fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
             assert!(history.u.iter().any(|&u| u != history.u[0]));
         }
         let last = records.energy.last().unwrap();
-        // Without friction the unbalance is what drives; the residual is the method's own error.
+        // Without friction the unbalance drives the motion; the residual is the method's own error.
         assert!(last.residual.abs() < 0.02 * last["work_unbalance"].abs().max(last.kinetic), "{last:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Equilibria next to the loads that buckle a string, and of strings that sag by metres, against beam theory.
+//! Equilibria next to the loads that buckle a string, and of strings that sag by metres, compared with beam theory.
 
 use std::f64::consts::PI;
 
@@ -187,7 +187,7 @@ fn a_cantilever_of_two_materials_sags_as_beam_theory_says() {
     let [a, b] = [7.0, 11.0];
     let (scenario, beams) = steel_and_aluminium([a, b]);
     let [p, q] = beams.map(|beam| beam.density * beam.area * GRAVITY);
-    // Deflection of the end: int M (L - x) / E I + V / (G S_r), with moment M and shear force V of what hangs beyond x.
+    // Deflection of the end: int M (L - x) / E I + V / (G S_r), with moment M and shear force V of the weight beyond x.
     let bending = [
         q * b * (a.powi(3) / 3.0 + 0.75 * b * a * a + 0.5 * b * b * a)
             + 0.5 * p * (a.powi(4) / 4.0 + b * a.powi(3) / 3.0),
@@ -256,8 +256,8 @@ fn a_pulled_string_carries_its_weight_and_the_pull() {
     assert!((w / stretch - 1.0).abs() < 1e-9, "{w} m for {stretch} m");
 }
 
-/// The largest force or moment that the equations of the documents leave unbalanced at a node of a scene at rest, over the largest that
-/// acts on one: wall and friction by (11) and (36), drag by the eccentricity where the string lies.
+/// Largest unbalanced force or moment at a node of a scenario at rest, by the equations of the documents, over the largest force that
+/// acts on one: wall and friction by (11) and (36), drag by the eccentricity at the string's position.
 fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
     let mud = model.scenario.mud.as_ref();
     for (e, element) in model.elements.iter().enumerate().filter(|_| model.effects.mud_drag) {
@@ -393,7 +393,7 @@ fn torque_at_the_top_is_what_friction_takes_at_break_away_and_sliding() {
             "{start:?}: {} N m for {taken}",
             rest.torque[0]
         );
-        // Friction carries its part of the weight; the clamp that of the span to where the string comes to lie.
+        // Friction carries its part of the weight; the clamp that of the span up to the place at which the string lies on the wall.
         let carried = normal * (1.0 + friction * friction).sqrt() / weight;
         assert!((0.95..1.0).contains(&carried), "{start:?}: {carried} of the weight");
         found.push((model, rest));

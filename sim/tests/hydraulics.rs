@@ -404,7 +404,7 @@ fn helical_gradients_of_the_independent_program() {
 
 #[test]
 fn rotation_factor_becomes_exact_in_a_narrow_annulus() {
-    // Same gap, speeds and mud, ever larger radii: what curvature adds must fade at least in proportion to it.
+    // Same gap, speeds and mud, ever larger radii: the effect of curvature must fade at least in proportion to it.
     let (gap, axial_speed, wall_speed) = (0.02, 0.5, 1.0);
     let errors = [0.1, 0.2, 0.4].map(|inner_radius: f64| {
         let outer_radius = inner_radius + gap;
@@ -428,7 +428,7 @@ fn rotation_factor_becomes_exact_in_a_narrow_annulus() {
 }
 
 /// Power law above 1: `tau_w = K (8 U / D (3 n + 1) / (4 n))^n` in a pipe and `K (12 U / D_h (2 n + 1) / (3 n))^n` in a slot (Metzner and
-/// Reed 1955; API RP 13D). Rotation raises the gradient of such a fluid; the factor, which stands for what it eases, stays 1.
+/// Reed 1955; API RP 13D). Rotation raises the gradient of such a fluid; the factor, which only lowers it, stays 1.
 #[test]
 fn shear_thickening_fluid_obeys_the_power_law_and_is_not_eased_by_rotation() {
     for flow_index in [1.2, 1.5, 2.0] {
@@ -557,7 +557,7 @@ fn rotation_damping_against_the_exact_confined_cylinder() {
         let short = 1.0 - here.rotation_damping / exact;
         assert!((low..high).contains(&short), "{short}");
     }
-    // The formula is the leading term in 1/sqrt(S): what it misses fades in proportion to that.
+    // The formula is the leading term in 1/sqrt(S): its error fades in proportion to that.
     let water = Mud { yield_stress: 0.0, flow_index: 1.0, ..MUD };
     let missing = [1e-3, 1e-3 / 16.0, 1e-3 / 256.0].map(|consistency| {
         let here = flow(&Mud { consistency, ..water }, &DRILLPIPE, 0.0);
@@ -684,7 +684,7 @@ fn still_mud_stands_equally_high_in_bore_and_annulus() {
 
 #[test]
 fn circulating_costs_the_friction_of_both_ways() {
-    // Down a bore and up the annulus around it hydrostatics cancel: what is left at the top of the bore is friction
+    // Down a bore and up the annulus around it hydrostatics cancel: the pressure at the top of the bore is that of friction
     // and the bit.
     let mud = Mud { bit_pressure_drop: 2e6, ..MUD };
     let here = flow(&mud, &COLLAR, 0.95);
@@ -756,7 +756,7 @@ proptest! {
         let effective = here.drag_per_length
             + PI / 4.0 * geometry.outer_diameter.powi(2) * here.friction_gradient;
         prop_assert!((here.effective_drag_per_length / effective - 1.0).abs() < 1e-12);
-        // C_f is what F_L = 1/2 C_f rho D_o U_o^2 says.
+        // C_f is that of F_L = 1/2 C_f rho D_o U_o^2.
         let scale = 0.5 * mud.density * geometry.outer_diameter * here.annulus_speed.powi(2);
         prop_assert!((here.drag_per_length / (here.friction_coefficient * scale) - 1.0).abs() < 1e-12);
 

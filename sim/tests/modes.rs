@@ -53,7 +53,7 @@ fn base_case_has_the_frequencies_and_growth_of_an_independent_computation() {
         assert!((nearest.frequency_hz / frequency - 1.0).abs() < 1e-3, "{frequency} Hz: {nearest:?}");
         assert!((nearest.growth_rate - growth).abs() < 0.012, "{frequency} Hz: {nearest:?}");
     }
-    // Sliding friction feeds backward whirl (dry-friction whirl) and takes from forward whirl.
+    // Sliding friction excites backward whirl (dry-friction whirl) and damps forward whirl.
     let flutter = found.iter().filter(|mode| mode.growth_rate > 0.3);
     assert!(flutter.clone().count() == 2 && flutter.clone().all(|mode| mode.kind == ModeKind::Backward));
 }
@@ -343,7 +343,7 @@ fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
 
 #[test]
 fn without_falling_friction_torsion_does_not_grow() {
-    // The slope of the friction curve is what feeds it: with mu_d = mu_s there is none.
+    // The slope of the friction curve excites it: with mu_d = mu_s there is none.
     let mut scenario = base();
     scenario.contact.dynamic_friction = scenario.contact.static_friction;
     let grows = |scenario: &Scenario| {
@@ -490,7 +490,7 @@ fn stiff_walls_hold_as_supports_do() {
 
 #[test]
 fn what_grows_is_found_on_a_mesh_of_thousands() {
-    // Falling friction feeds torsion of 200 m of string; steps of 4 cm or 50 cm are all the same to a wave of a kilometre.
+    // Velocity-weakening friction excites torsion of 200 m of string; steps of 4 cm or 50 cm are equal for a wave of a kilometre.
     let growing = |length: f64| {
         let mut scenario = preset("hard/elements-5000").expect("shipped preset");
         let mesh = scenario.mesh.lengths_mut().expect("has target lengths");
@@ -627,7 +627,7 @@ fn roots(function: impl Fn(f64) -> f64, to_hz: f64) -> Vec<f64> {
     bisected.filter(|hz| *hz < to_hz).collect()
 }
 
-/// Nodes by themselves on springs, all with one frequency.
+/// Independent nodes on springs, all with one frequency.
 fn equal_oscillators(nodes: usize) -> Pencil {
     let zero = BlockTridiagonal::zeros(nodes);
     let (mut mass, mut stiffness) = (zero.clone(), zero.clone());
@@ -655,8 +655,8 @@ fn equal_eigenvalues_are_searched_again_and_those_still_missing_are_told() {
 
 #[test]
 fn straight_strings_have_the_modes_of_rods_unless_they_are_switched_off() {
-    // A rod clamped above and free below: c (2 n - 1) / 4 L, axial with c^2 = E / rho, torsional with G / rho; where nothing in the scene
-    // moves it so, a run in time leaves these motions out.
+    // A rod clamped above and free below: c (2 n - 1) / 4 L, axial with c^2 = E / rho, torsional with G / rho. If nothing in the scenario
+    // excites these motions, a run in time omits them.
     let mut scenario = base();
     for station in &mut scenario.well.survey {
         (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);

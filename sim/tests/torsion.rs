@@ -1,4 +1,4 @@
-//! Torsional modes that velocity-weakening friction feeds: the chain of shafts against all modes together, and what damping does to them.
+//! Torsional modes that velocity-weakening friction excites: the chain of shafts compared with all modes together, and the effect of damping.
 
 use std::f64::consts::PI;
 
@@ -21,7 +21,7 @@ fn twist_alone_has_the_frequencies_and_growth_of_all_motion_together() {
     let search = ModeSearch { to_hz: 60.0, ..ModeSearch::default() };
     let all = modes(&model, &equilibrium, &search).expect("found").modes;
     let chain = torsional_modes(&model, &equilibrium).expect("twist takes part");
-    // Modes that move next to nothing but twist; what of one is lateral, up to 3e-3 of its energy, is damped by some 10 1/s.
+    // Modes of almost pure twist; the lateral part of one, up to 3e-3 of its energy, is damped by some 10 1/s.
     let torsional = all.iter().filter(|mode| mode.kind == ModeKind::Torsional && mode.torsional_share > 0.99);
     let mut count = 0;
     for (mode, alone) in torsional.zip(&chain) {

@@ -1,4 +1,4 @@
-//! The error that a result tells of its steps, against the true one, over whole runs through stick-slip and impacts.
+//! The error of its steps that a result states, compared with the true one, over whole runs through stick-slip and impacts.
 //! Run: `cargo bench -p drillsweep-study --bench error_estimate` (some ten minutes)
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Scenario};
@@ -83,7 +83,7 @@ fn compare(
             tally.unknown += 1;
             continue;
         };
-        // What the two methods of the reference disagree by is no error of the run.
+        // The disagreement of the reference's two methods is no error of the run.
         let is_covered = error[0] <= estimate + agreement[0] && error[1] <= estimate + agreement[1];
         *(if is_covered { &mut tally.covered } else { &mut tally.missed }) += 1;
         tally.ratios.push(estimate / error[0].max(error[1]));

@@ -1,4 +1,5 @@
-//! Fifty random scenarios of a minute with stick-slip, checked by RK4 at 0.95 of its stability limit: which of them are wrong without saying so?
+//! Fifty random scenarios of a minute with stick-slip, checked by RK4 at 0.95 of its stability limit: number of those that are wrong without
+//! reporting it.
 //! Run: `cargo bench -p drillsweep-study --bench random_truth` (some twenty minutes; a seed may follow `--`)
 
 use random_truths::{Judgement, judge, long_scenario};
@@ -9,7 +10,7 @@ mod random_truths;
 /// Scenarios with a judgement.
 const WANTED: usize = 50;
 
-/// Scenarios that are looked at most.
+/// Largest number of scenarios examined.
 const MOST: u64 = 2000;
 
 /// Simulated time of a scenario \[s\] and length of its elements \[m\].

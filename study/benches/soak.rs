@@ -73,7 +73,7 @@ impl Arguments {
     }
 }
 
-/// End of a scenario, as the report counts it.
+/// End of a scenario, as counted in the report.
 enum Ending {
     /// End of a run; with `--finer` also the comparison, and whether the accuracy is a tolerance on statistics.
     Run(RunEnd, Option<(bool, Refined)>),
@@ -184,9 +184,9 @@ type Failures = (u64, Vec<(u64, String)>);
 #[derive(Default)]
 struct Report {
     finite: u64,
-    /// The largest share of its bound that a finite scenario's ledger left over, with the scenario.
+    /// Largest residual of a finite scenario's ledger as a share of its bound, with the scenario.
     worst_ledger: (f64, u64),
-    /// Finite scenarios whose ledger left over more than a tenth of its bound.
+    /// Finite scenarios whose ledger's residual exceeds a tenth of its bound.
     loose_ledgers: u64,
     /// Typed failures by cause, with a few scenarios of each.
     failed: BTreeMap<&'static str, Failures>,
@@ -216,7 +216,7 @@ struct Differing {
     index: u64,
     /// Largest difference.
     difference: Difference,
-    /// The error by steps that the result reports, relative; absent where it is unknown.
+    /// The error by steps that the result reports, relative; absent if it is unknown.
     stated: Option<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and what rests on it converges.
+//! Contact by length of string (`contact.law = "per_length"`): the wall is the same for every mesh, and the position of a string at rest on it
+//! converges.
 
 use drillsweep_scenario::{
     Accuracy, Integrator, Mesh, NodeChoice, RayleighDamping, Scenario, StartFriction, SurveyStation,
@@ -70,7 +71,7 @@ impl Resting {
 
     /// The same without a mesh: (E I y'')'' = w - kappa max(0, y - j0), clamped above, free below. From the touchdown at a on, y - j0 is
     /// w/kappa plus a wave that decays away from it (the free end of a pipe under uniform load is as straight as its middle);
-    /// above it y is a polynomial of order four. Deflection, rotation, moment and shear force continue at a, the deflection being j0: linear
+    /// above it y is a polynomial of order four. Deflection, rotation, moment and shear force are continuous at a, the deflection being j0: linear
     /// equations for the rest, and a by bisection. `shear_flexibility` is 1/(G S_r) of a Timoshenko beam, 0 of an Euler-Bernoulli one.
     fn on_an_elastic_wall(beam: &Beam, kappa: f64, shear_flexibility: f64) -> (Self, f64) {
         let &Beam { bending, weight, clearance, length } = beam;
@@ -102,7 +103,7 @@ impl Resting {
             let gap = line * a.powi(3) / 6.0 + 0.5 * d2 * a * a + d1 * a - (wave * even[0] + b * odd[0]);
             (gap, d1, d2, b)
         };
-        // A wall that gives way is reached below where a rigid one would be left: the bracket is about that.
+        // A soft wall is reached below the place at which a rigid one would be left: the bracket is about that.
         let rigid = (72.0 * bending * clearance / weight).powf(0.25);
         let (mut low, mut high) = (0.5 * rigid, 1.5 * rigid);
         let sign = continued(low).0.signum();
@@ -202,9 +203,9 @@ fn pipe_on_a_wall_by_length_converges_with_the_fourth_power_of_the_elements() {
     }
 }
 
-/// Orbit sizes \[m\] of the pipe on its low side at some depths, where it turns with a mass off its axis: in the free span, by the touchdown, and
-/// on the wall. Damping has taken what is not the mass' doing before the window begins. The wall has no damper: as (11) has it, a damper begins
-/// with half its force at once where a node arrives, which leaves a scatter of half a per cent that falls with the mesh by the first order only.
+/// Orbit sizes \[m\] of the pipe on its low side at some depths, if it turns with a mass off its axis: in the free span, by the touchdown, and
+/// on the wall. Damping has removed all motion but that by the mass before the window begins. The wall has no damper: by (11), a damper begins
+/// with half its force at once when a node arrives, which leaves a scatter of half a per cent that falls with the mesh by the first order only.
 fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
     orbits_of(&turning_pipe(elements, 4.0))
 }
@@ -244,7 +245,7 @@ fn orbits_of(scenario: &Scenario) -> Vec<f64> {
 
 #[test]
 fn small_orbits_are_those_of_the_linear_response_to_the_unbalance() {
-    // A tenth of the mass, so that the string stays on the wall where it rests.
+    // A tenth of the mass, so that the string stays on the wall at its place of rest.
     let mut scenario = turning_pipe(60, 0.4);
     scenario.statics.friction = StartFriction::Sliding;
     let model = Model::new(&scenario).expect("has a model");
@@ -313,7 +314,7 @@ fn estimate_of_the_meshs_part_is_the_distance_from_a_much_finer_mesh() {
     let (mut worst, mut recorded) = (0.0_f64, 0.0_f64);
     for (i, (node, x)) in model.mesh.nodes.iter().zip(&equilibrium.displacement).enumerate() {
         let nearest = fine_model.mesh.nearest_node(node.measured_depth);
-        // The stretch above the first joint is cut into parts of other lengths.
+        // The part above the first joint is cut into elements of other lengths.
         if (fine_model.mesh.nodes[nearest].measured_depth - node.measured_depth).abs() > 1e-9 {
             continue;
         }

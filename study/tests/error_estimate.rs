@@ -1,4 +1,4 @@
-//! The error estimate against the true error, over a set of scenes.
+//! The error estimate compared with the true error, over a set of scenarios.
 
 use drillsweep_scenario::{
     Accuracy, Effect, Integrator, NodeChoice, RegimeChoice, Scenario, Switch, TimeStepping, preset,
@@ -11,7 +11,7 @@ use drillsweep_sim::solve::statics::Equilibrium;
 /// Simulated time \[s\]: long enough for the string to leave its rest, too short for histories to part.
 const DURATION: f64 = 0.5;
 
-/// The calibration scenes: the paper's string, changed in what decides how smooth its motion is.
+/// The calibration scenarios: the paper's string, with changes that determine the smoothness of its motion.
 fn scenes() -> Vec<(&'static str, Scenario)> {
     let mut base = preset("paper-200m").expect("shipped preset");
     base.duration = DURATION;

@@ -1,4 +1,4 @@
-//! The hard scenes that ship as presets, each held to something that does not come from the run itself: an analytic value, a published
+//! The hard scenarios that ship as presets, each compared with a value that does not come from the run itself: an analytic one, a published
 //! one, a bound of the physics, or another method.
 
 use std::f64::consts::{PI, TAU};
@@ -17,7 +17,7 @@ use drillsweep_sim::validation::validate;
 use drillsweep_study::cost::Measure;
 use drillsweep_study::finer::{Verdict, ask};
 
-/// A hard scene, run.
+/// A hard scenario with its run.
 struct Scene {
     model: Model,
     equilibrium: Equilibrium,
@@ -25,7 +25,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// Runs a preset and checks what holds for every scene: finite numbers, a ledger far within its bound, and no node deeper in the wall
+    /// Runs a preset and checks the properties of every scenario: finite numbers, a ledger far within its bound, and no node deeper in the wall
     /// than its largest force can push it.
     fn run(name: &str) -> Self {
         Self::of(&preset(name).expect("shipped preset"))
@@ -89,7 +89,7 @@ impl Scene {
         elements.sum()
     }
 
-    /// Friction torque that the wall exerts at rest, at the most \[N m\].
+    /// Largest friction torque that the wall exerts at rest \[N m\].
     fn friction_torque(&self) -> f64 {
         let nodes = self.model.mesh.nodes.iter().zip(&self.equilibrium.normal_force);
         let arm: f64 = nodes.map(|(node, force)| force * node.contact_radius).sum();
@@ -119,7 +119,7 @@ fn with_method(name: &str, duration: f64, integrator: Integrator, step: f64) -> 
     scenario
 }
 
-/// Runs a scene over a shorter time by ESDIRK4 and by generalized-alpha: two methods with nothing in common but the model agree.
+/// Runs a scenario over a shorter time by ESDIRK4 and by generalized-alpha: two methods with nothing in common but the model agree.
 fn methods_agree(name: &str, duration: f64, largest_distance: f64) {
     let a = Scene::of(&with_method(name, duration, Integrator::Esdirk4, 5e-4));
     let b = Scene::of(&with_method(name, duration, Integrator::GeneralizedAlpha, 1.25e-4));
@@ -140,7 +140,7 @@ fn every_hard_scene_ships_with_its_reason() {
     }
 }
 
-/// Scenes that are asked over a part of their time, and that \[s\]: the grown torsion of all of it takes half a minute.
+/// Scenarios that are checked over a part of their time, and that \[s\]: the grown torsion of all of it takes half a minute.
 const ASKED_OVER: [(&str, f64); 1] = [("hard/high-frequency-torsion", 0.5)];
 
 #[test]
@@ -186,13 +186,13 @@ fn a_finer_step_says_the_same_of_every_hard_scene() {
 fn tight_gauge_holds_its_nodes() {
     let scene = Scene::run("hard/tight-gauge");
     for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
-        // 1e-5 m of play, and what 20 kN push into 1e9 N/m.
+        // 1e-5 m of clearance, and the penetration by 20 kN at 1e9 N/m.
         assert!(!node.is_gauge || contacts.largest_radius() < 1e-5 + 4e-5, "{contacts:?}");
     }
     methods_agree("hard/tight-gauge", 0.05, 0.02);
 }
 
-/// A scene whose gauges have next to no play in a wall of 1e9 N/m: turning or at rest, with friction or without, with the wall's damping or
+/// A scenario whose gauges have almost no clearance in a wall of 1e9 N/m: turning or at rest, with friction or without, with the wall's damping or
 /// without, by a method.
 fn without_play(
     name: &str,
@@ -235,7 +235,7 @@ fn gauges_without_play_are_held_in_any_direction() {
     for scenario in scenes {
         let scene = Scene::of(&scenario);
         for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
-            // What 50 kN push into 1e9 N/m.
+            // Penetration by 50 kN at 1e9 N/m.
             assert!(!node.is_gauge || contacts.largest_radius() < 5e-5, "{}: {contacts:?}", scenario.name);
         }
         // Contact that does not converge cuts steps, and moves a string that nothing moves.
@@ -253,7 +253,7 @@ fn gauges_without_play_are_held_in_any_direction() {
 
 #[test]
 fn steps_shorten_where_the_ledger_opens() {
-    // Nothing but the steps takes energy from the vibrations in a wall of 1e9 N/m, and local errors do not tell of it: with steps of 1 ms
+    // Only the steps take energy from the vibrations in a wall of 1e9 N/m, and local errors do not show it: with steps of 1 ms
     // throughout the run ends by its ledger after 1.8 s. A second method at a fiftieth of the step has nothing to shorten.
     let ended = |accuracy| {
         let scenario = without_play("paper-200m-dry", true, false, 0.0, accuracy, 2.5);
@@ -294,8 +294,8 @@ fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
         Scene::of(&scenario).records.effort
     };
     let (rest, turning) = (effort(false), effort(true));
-    // Friction that sticks is a stiff damper, which sweeps converge with at a quarter of the step; a longest step that is shorter by that
-    // takes as many times more, and the first steps of both are as short.
+    // Friction that sticks is a stiff damper, with which contact iterations converge at a quarter of the step. With a longest step that much shorter
+    // there are as many times more steps, and the first steps of both are as short.
     assert_eq!((turning.subdivisions, rest.subdivisions), (1, 4));
     assert!(rest.steps <= 4 * turning.steps, "{rest:?}, {turning:?}");
     assert_eq!((rest.rejected_steps, rest.unresolved_steps), (0, 0), "{rest:?}");
@@ -544,7 +544,7 @@ fn straight_holes_carry_the_buoyed_weight() {
         let tolerance = half * scene.buoyed_weight() + 1.0;
         assert!((found - expected).abs() < 2.0 * tolerance, "{found} N against {expected} N");
     }
-    // Horizontal: the wall carries it, but for what the clamped top does.
+    // Horizontal: the wall carries the weight, but for the force of the clamped top.
     let horizontal = Scene::run("hard/horizontal");
     let up: f64 = horizontal
         .equilibrium
@@ -616,7 +616,7 @@ fn wide_tool_joints_carry_the_string() {
     let joints = scene.model.mesh.nodes.iter().zip(&scene.equilibrium.normal_force);
     let carried: f64 = joints.filter(|(node, _)| node.clearance < 1.1e-3).map(|(_, force)| force).sum();
     assert!(carried > 0.2 * scene.normal_force());
-    // Not one is further out than its play and what the wall gives.
+    // No node is further out than its clearance and its penetration.
     for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
         if node.clearance < 1.1e-3 {
             assert!(contacts.largest_radius() < 1.1e-3 + 5e-3, "{contacts:?}");
@@ -629,7 +629,7 @@ fn string_on_the_wall_weighs_what_it_weighs() {
     let scene = Scene::run("hard/all-on-wall");
     let touching = scene.equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count();
     assert!(touching > 85, "{touching} of 100 nodes");
-    // Normal force and its friction carry the weight together: N sqrt(1 + mu^2), less what the clamped end holds.
+    // Normal force and its friction carry the weight together: N sqrt(1 + mu^2), less the force of the clamped end.
     let mu = scene.model.scenario.contact.static_friction;
     let carried = scene.normal_force() * (1.0 + mu * mu).sqrt();
     assert!(
@@ -642,7 +642,7 @@ fn string_on_the_wall_weighs_what_it_weighs() {
 #[test]
 fn start_on_the_axis_responds_as_a_round_rotor() {
     let scene = Scene::run("hard/on-axis");
-    // Nothing tells u from v: the unbalance drives a whirl in its own sense, and the wall is not reached.
+    // u and v are equivalent: the unbalance drives a whirl in its own sense, and the wall is not reached.
     assert!(scene.equilibrium.displacement.iter().all(|x| x[0] == 0.0 && x[1] == 0.0));
     assert!(scene.records.contacts.iter().all(|contacts| contacts.contact_count == 0));
     let history = &scene.records.histories[0];

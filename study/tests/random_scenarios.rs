@@ -65,11 +65,11 @@ fn scenarios_of_seed_6() {
 
 /// Compares fifty results at an accuracy with those of a finer step, and with the errors that they state.
 ///
-/// These scenarios have impacts and friction without damping, at speeds that no well sees. A third of those that move differ from a start a
+/// These scenarios have impacts and friction without damping, at speeds that occur in no well. A third of those that move differ from a start a
 /// micrometre away: a window of 0.13 s shows nothing of them at any step. Of the others one in four may differ at a finer step. Those
 /// examined lack stiffness-proportional damping, so that torsion persists above the frequencies that the step resolves, or have hard walls
-/// on which long steps chatter. Such a result has to state an error as large, or an unknown one. Of four thousand scenarios, one result in
-/// forty that move neither agrees nor states it.
+/// on which long steps chatter. Such a result has to state an error as large, or an unknown one. Of four thousand scenarios, one in
+/// forty results with motion neither agrees nor states it.
 fn most_agree(preset: AccuracyPreset) {
     let (mut agree, mut differ, mut sensitive, mut unstated) = (0, Vec::new(), 0, 0);
     for index in 0..50 {

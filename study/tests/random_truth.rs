@@ -1,4 +1,5 @@
-//! Ten random scenarios with stick-slip at reduced size: none is wrong without saying so, by a method of another kind. More and longer ones:
+//! Ten random scenarios with stick-slip at reduced size, compared with an independent method: none is wrong without reporting it. More and longer
+//! ones:
 //! `cargo bench -p drillsweep-study --bench random_truth`.
 
 use random_truths::{Judgement, judge, long_scenario};

@@ -1,4 +1,4 @@
-//! Strings that nothing moves: they stay where they are, at a cost like that of those that move.
+//! Strings without excitation: they stay at rest, at a cost like that of strings that move.
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Effect, NodeChoice, Scenario, Switch, preset};
 use drillsweep_sim::control::Control;
@@ -22,7 +22,7 @@ fn scene(name: &str, change: impl Fn(&mut Scenario)) -> Scenario {
     scenario
 }
 
-/// A run from the equilibrium, or as a disturbed member of an ensemble, with its ratio of the energy that is left over.
+/// A run from the equilibrium, or as a disturbed member of an ensemble, with the ratio of its residual energy.
 fn run(scenario: &Scenario, member: u32) -> (Records, Option<f64>) {
     let model = Model::new(scenario).expect("has a model");
     let equilibrium = Equilibrium::find(&model).expect("rests");
@@ -64,7 +64,7 @@ fn a_string_at_rest_stays_there_at_the_cost_of_a_moving_one() {
         (scenario.operation.weight_on_bit, scenario.operation.torque_on_bit) = (0.0, 0.0);
         scenario.effects.set(Effect::Unbalance, Switch::Off);
     });
-    // The last one is a member of an ensemble, which starts a micrometre beside its equilibrium.
+    // The last one is a member of an ensemble, which starts a micrometre from its equilibrium.
     for (scenario, member, farthest) in
         [(&on_wall, 0, 1e-8), (&turning, 0, 1e-8), (&hanging, 0, 0.0), (&hanging, 1, 1e-5)]
     {
@@ -85,7 +85,7 @@ fn a_string_at_rest_stays_there_at_the_cost_of_a_moving_one() {
             }
         }
         assert!(drift <= farthest, "{name}: {drift} m or rad");
-        // Where friction sticks, sweeps over contacts converge with half the step only.
+        // If friction sticks, contact iterations converge with half the step only.
         let (effort, expected) = (&records.effort, &moving.effort);
         assert_eq!((effort.rejected_steps, effort.unresolved_steps), (0, 0), "{name}: {effort:?}");
         assert!(effort.steps <= 2 * expected.steps, "{name}: {effort:?} {expected:?}");

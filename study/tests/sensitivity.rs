@@ -1,4 +1,4 @@
-//! By how much a scenario amplifies a disturbance, against the modes about its equilibrium.
+//! Amplification of a disturbance by a scenario, compared with the modes about its equilibrium.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 

@@ -17,7 +17,7 @@ fn settled(mut scenario: Scenario, longest: f64) -> Scenario {
     scenario
 }
 
-/// A shaft of one element, which takes next to no time.
+/// A shaft of one element, whose runs take little time.
 fn shaft(longest: f64) -> Scenario {
     let mut scenario = settled(preset("hard/one-element").expect("shipped preset"), longest);
     scenario.recording.rate_hz = 200.0;
@@ -91,7 +91,7 @@ fn no_run_ends_before_its_fixed_windows_do() {
 }
 
 /// Torsion of the reduced string grows with 0.05 1/s at this speed: over [20, 30) s the string is quiet, and settled it sticks and slips in
-/// orbits more than ten times as large. Two runs of 160 s together, since what has to be shown comes late: 3 s.
+/// orbits more than ten times as large. Two runs of 160 s together, since the settled motion comes late: 3 s.
 #[test]
 fn a_mode_that_grows_keeps_a_run_going_until_it_sticks_and_slips() {
     let mut quiet = whole_run_scenes::reduced();

@@ -1,4 +1,4 @@
-//! Cost studies from end to end: what is run, what the two methods of the reference make of it, what is told.
+//! Cost studies from end to end: their runs, their reference from two methods, and their report.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
@@ -41,7 +41,7 @@ fn run(row: &PlannedRow, member: u32) -> Result<(Measure, f64), String> {
     let model = Model::new(&row.scenario).unwrap();
     let equilibrium = Equilibrium::find(&model).unwrap();
     match Transient::member(&model, &equilibrium, member).unwrap().run(&Control::new()) {
-        // There is no clock here: what a run costs is its steps.
+        // Without a clock, the cost of a run is its number of steps.
         Ok(Outcome::Finished(records)) => {
             let cost = records.effort.steps as f64;
             Ok((Measure::new(&model, &equilibrium, &records, member), cost))
@@ -206,7 +206,7 @@ fn an_ablation_removes_one_effect_at_a_time_and_reports_the_change() {
     // Without its wall the string is buckled by the weight on bit.
     assert!(row(Effect::Contact).failure.as_ref().unwrap().contains("no equilibrium"));
     let change = |effect| row(effect).errors.clone().unwrap();
-    // Buoyancy moves the string at rest; what acts on motion alone does not.
+    // Buoyancy moves the string at rest; effects on motion alone do not.
     assert!(change(Effect::Buoyancy).static_position > 1e-3);
     assert!(change(Effect::FluidAddedMass).static_position < 1e-14);
     assert!(change(Effect::FluidAddedMass).trajectory.unwrap() > 0.01);

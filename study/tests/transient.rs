@@ -155,7 +155,7 @@ fn stiffer_contact_cuts_the_step_so_that_two_sweeps_stay_stable() {
         let last = records.energy.last().expect("booked");
         assert!(last.residual.abs() < 0.1 * last["contact_work"].abs(), "{factor}: {last:?}");
     }
-    // Steps that adapt themselves rely on implicit forces: only what nodes do to each other cuts the longest.
+    // Steps that adapt themselves rely on implicit forces: only the forces of nodes on each other cut the longest.
     scenario.accuracy = Accuracy::Preset(AccuracyPreset::Standard);
     scenario.contact.stiffness *= 100.0;
     scenario.contact.damping *= 100.0;
@@ -280,8 +280,8 @@ fn divergence_names_time_node_and_reason() {
 
 #[test]
 fn a_disturbance_that_no_step_resolves_is_no_failure() {
-    // A string that hangs still, disturbed by a micrometre: nothing excites it, and of what the disturbance has in frequencies beyond those
-    // that the steps resolve an L-stable method leaves nothing.
+    // A string that hangs still, disturbed by a micrometre: nothing excites it, and an L-stable method damps the part of the disturbance at
+    // frequencies beyond those that the steps resolve.
     let mut scenario = preset("hard/vertical").expect("shipped preset");
     scenario.string.unbalance.clear();
     let operation = &mut scenario.operation;
@@ -342,7 +342,7 @@ fn falling_friction_curve_makes_torsion_swing_up_to_stick_slip() {
 
 #[test]
 fn without_friction_nothing_but_the_unbalance_moves_the_string() {
-    // Friction is what feeds self-excited motion: without it the string answers at the speed of rotation, 2 Hz, and,
+    // Friction excites self-excited motion: without it the string answers at the speed of rotation, 2 Hz, and,
     // through the wall, at its multiples.
     let mut scenario = base(30.0, Integrator::GeneralizedAlpha, 5e-4);
     scenario.effects.set(Effect::Friction, Switch::Off);

@@ -1,5 +1,5 @@
-//! Statistics over the window that is read, at the end of whole runs through stick-slip, against a reference that two methods of
-//! different kind reach.
+//! Statistics over the window at the end of whole runs through stick-slip, relative to a reference on which two independent methods
+//! agree.
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Integrator, Scenario, TimeStepping, preset};
 use drillsweep_sim::control::Control;
@@ -11,7 +11,7 @@ use whole_run_scenes::{WholeRun, apart, reduced, scenes};
 
 mod whole_run_scenes;
 
-/// Scenes whose friction is as steep as printed or steeper, walls as printed or ten times as hard.
+/// Scenarios whose friction is as steep as printed or steeper, walls as printed or ten times as hard.
 const HELD_TO_PROMISES: [&str; 6] =
     ["base case", "heavy mud, fast flow", "friction steeper", "no adhesion", "hard wall", "building well"];
 
@@ -32,7 +32,7 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
     let captures = |run: &WholeRun| run.records.contacts.iter().any(|node| node.capture_count > 0);
     assert!(captures(&fine), "{name}: nothing sticks");
     let mut failures = Vec::new();
-    // A reference exists where two methods agree within a third of the tightest promise.
+    // A reference exists if two methods agree within a third of the tightest bound.
     let agreement = apart(&fine, &rk4);
     if !(agreement[0] <= 1e-3 && agreement[1] <= 1e-2 / 3.0) {
         failures.push(format!("{name}: no reference, methods are {agreement:.5?} apart"));
@@ -61,7 +61,7 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
     failures
 }
 
-/// A scene that multiplies disturbances is distinguished from one that does not by an ensemble only.
+/// Only an ensemble distinguishes a scenario that amplifies disturbances from one that does not.
 #[test]
 fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
     let standard = Accuracy::Preset(AccuracyPreset::Standard);
@@ -78,7 +78,7 @@ fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
     assert!(matches!(told, TimeError::Unknown { .. }), "{told:?}");
 }
 
-/// Records are apart from steps: with steps longer than the recording interval every sample is still that of the converged motion.
+/// Records are independent of steps: with steps longer than the recording interval every sample is still that of the converged motion.
 #[test]
 fn samples_within_a_step_are_as_good_as_those_at_its_ends() {
     let mut scenario = reduced();
@@ -112,8 +112,8 @@ fn samples_within_a_step_are_as_good_as_those_at_its_ends() {
     }
 }
 
-/// Contacts are read at the ends of steps, from the law: with steps longer than the recording interval they are still those that short
-/// steps find, sticking nodes and impacts included.
+/// Contacts are evaluated at the ends of steps, by the law: with steps longer than the recording interval they are still those of short
+/// steps, sticking nodes and impacts included.
 #[test]
 fn contacts_of_long_steps_are_those_of_short_ones() {
     let mut scenario = preset("hard/stick-slip").expect("shipped preset");

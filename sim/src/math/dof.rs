@@ -1,8 +1,8 @@
-//! The degrees of freedom of a node: their order, their names, and which of them a system has.
+//! The degrees of freedom of a node: their order, their names, and the subset that a system has.
 //!
-//! Whatever holds values by degree of freedom holds them in this order: displacements, then rotations, the twist last. A system without
-//! some of them keeps the order of the others, so that u and v are the first two of every system and the twist, where there is any,
-//! is the last one.
+//! All values by degree of freedom are in this order: displacements, then rotations, the twist last. A system without
+//! some of them keeps the order of the others, so that u and v are the first two of every system and the twist, if there is one,
+//! is the last.
 
 /// Degrees of freedom of a node.
 pub const DOFS: usize = 6;
@@ -20,7 +20,7 @@ pub const THETA_Y: usize = 4;
 /// Twist, the rotation about e3 on top of the imposed one \[rad\].
 pub const THETA_Z: usize = 5;
 
-/// The names of all of them, in their order.
+/// The names of all degrees of freedom, in their order.
 pub const NAMES: [&str; DOFS] = ["u", "v", "w", "theta_x", "theta_y", "theta_z"];
 
 /// Number of lateral displacements, the first degrees of freedom of every system.
@@ -35,12 +35,12 @@ pub const BENDING_ROTATIONS: usize = 2;
 pub struct Dofs<const D: usize = DOFS>([usize; D]);
 
 impl Dofs {
-    /// All of them.
+    /// All degrees of freedom.
     pub const ALL: Self = Self([U, V, W, THETA_X, THETA_Y, THETA_Z]);
 }
 
 impl<const D: usize> Dofs<D> {
-    /// Those given.
+    /// The given degrees of freedom.
     ///
     /// # Panics
     /// The degrees of freedom are not in their order, or lack u or v.
@@ -63,17 +63,17 @@ impl<const D: usize> Dofs<D> {
         self.0.iter().position(|&own| own == dof)
     }
 
-    /// Picks the entries that the system has out of a row or column of all six.
+    /// Selects the entries of the system from a row or column of all six.
     pub fn of<T: Copy>(&self, all: &[T; DOFS]) -> [T; D] {
         self.0.map(|dof| all[dof])
     }
 
-    /// The entry of a six by six matrix that stands at a place of the system's.
+    /// Row and column in a six by six matrix of a place in the system's.
     pub fn in_all(&self, (row, column): (usize, usize)) -> (usize, usize) {
         (self.0[row], self.0[column])
     }
 
-    /// All six values, `others` where the system has none.
+    /// All six values, with those of `others` for degrees of freedom that the system lacks.
     pub fn among(&self, values: &[f64; D], others: [f64; DOFS]) -> [f64; DOFS] {
         self.0.iter().zip(values).fold(others, |mut all, (&dof, value)| {
             all[dof] = *value;

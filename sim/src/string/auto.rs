@@ -1,14 +1,14 @@
 //! Element lengths that follow from the string and its wall: the mesh `auto`.
 //!
-//! The wall acts along the elements, so that a tool joint needs no more than one: contact at nodes was 1 + 2/n^2 times too stiff against the rolling of a
-//! joint of n elements, contact along them is exact for a rigid one. What asks for elements is bending:
+//! The wall acts along the elements, so that a tool joint needs no more than one: contact at nodes was 1 + 2/n^2 times too stiff against the rolling
+//! of a joint of n elements, contact along them is exact for a rigid one. Bending requires elements:
 //!
-//! - Bodies between joints sag under compression and touch the wall with their middle where the hole bends. On eight elements a body orbits between
+//! - Bodies between joints sag under compression and touch the wall in their middle in a curved hole. With eight elements a body, orbits between
 //!   joints are within some 1 % of their limit.
-//! - What lies on the wall by itself presses it in over (4 E I / kappa)^(1/4) from a place that holds it off (Hetenyi 1946), 1.06 m for
+//! - A part of the string on the wall presses itself in over (4 E I / kappa)^(1/4) next to a place that holds it off (Hetenyi 1946), 1.06 m for
 //!   collars of 0.159 m.
 //!
-//! `study/tests/contact_mesh.rs` compares where strings rest in three wells with much finer meshes, and docs/accuracy.md has settled orbits.
+//! `study/tests/contact_mesh.rs` compares positions of rest in three wells with much finer meshes, and docs/accuracy.md has settled orbits.
 
 use drillsweep_scenario::{Scenario, Section};
 

@@ -7,8 +7,8 @@ use drillsweep_scenario::{
 use super::auto;
 use super::error::{MAX_ELEMENTS, MeshError};
 
-/// A gauge, mass or recorded depth nearer to a boundary than this part of the target element length is put on the boundary:
-/// an element that short would cost accuracy and stiffness for nothing.
+/// Part of the target element length within which a gauge, mass or recorded depth is moved to a boundary:
+/// an element that short would cost accuracy and stiffness without benefit.
 pub const SNAP_FRACTION: f64 = 0.05;
 
 /// Part of the string that an element belongs to.
@@ -26,7 +26,7 @@ pub enum ElementKind {
     Bit,
 }
 
-/// A stretch of one kind, one cross-section and one material, with nodes forced at both ends.
+/// A part of the string of one kind, one cross-section and one material, with nodes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stretch {
     /// Measured depth of the upper end \[m\].
@@ -41,7 +41,7 @@ pub(super) struct Stretch {
     pub(super) target: f64,
 }
 
-/// The stretches of the string as its sections give them, from the top down.
+/// The parts of the string by its sections, from the top down.
 pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<Stretch>, MeshError> {
     let mut stretches = Vec::new();
     let mut section_top = 0.0;
@@ -135,8 +135,8 @@ fn push_piece(
     stretches.push(Stretch { top: body_bottom, ..joint_stretch });
 }
 
-/// Splits the stretches at each of `places` \[m\], in the order of depth. A place nearer to an end of its
-/// stretch than [`SNAP_FRACTION`] of the target length splits nothing: that end stands for it.
+/// Splits the parts at each of `places` \[m\], in the order of depth. A place nearer to an end of its
+/// part than [`SNAP_FRACTION`] of the target length splits nothing: that end takes its place.
 pub(super) fn split(mut stretches: Vec<Stretch>, places: &[f64]) -> Vec<Stretch> {
     let mut places = places.to_vec();
     places.sort_by(f64::total_cmp);

@@ -1,15 +1,15 @@
 //! Failures of the mesh.
 
-/// A string of more elements than this is refused.
+/// Largest number of elements of a string.
 pub const MAX_ELEMENTS: usize = 20_000;
 
 /// A string that cannot be cut into elements. Sections, gauges and masses are counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshError {
-    /// There is no section.
+    /// The string has no sections.
     #[error("the string has no sections")]
     NoSections,
-    /// A section without pieces or with pieces without length.
+    /// A section has no pieces, or its pieces have no length.
     #[error("section {section} has no length")]
     NoLength {
         /// The section.
@@ -21,13 +21,13 @@ pub enum MeshError {
         /// The section.
         section: usize,
     },
-    /// A target element length that is not a positive number.
+    /// A target element length is not a positive number.
     #[error("the target element length {0} m is not a positive number")]
     Target(f64),
-    /// More than [`MAX_ELEMENTS`] elements.
+    /// The mesh has more than [`MAX_ELEMENTS`] elements.
     #[error("the mesh has more than {MAX_ELEMENTS} elements")]
     TooManyElements,
-    /// A gauge or mass above the top or below the bit.
+    /// A gauge or mass is above the top or below the bit.
     #[error("{what} {index} at {measured_depth} m is not on the string")]
     OffString {
         /// "gauge" or "unbalance mass".

@@ -5,7 +5,7 @@ use drillsweep_scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
 use super::boundaries::{self, ElementKind};
 use super::error::{MAX_ELEMENTS, MeshError};
 
-/// Depths may overshoot the ends of the string by this much \[m\]: its length is a sum and carries rounding.
+/// Excess \[m\] that a depth may have beyond the ends of the string: its length is a sum and carries rounding.
 const DEPTH_ROUNDING: f64 = 1e-9;
 
 /// One element, between nodes `i` and `i + 1` of the mesh.
@@ -42,16 +42,16 @@ pub struct MeshNode {
     /// Radial clearance j0 \[m\]: the gauge's, or half the difference of the hole's diameter and the larger
     /// outer diameter of the adjoining elements.
     pub clearance: f64,
-    /// Radius at which the wall is touched, R_e = D_ch/2 - j0 \[m\].
+    /// Radius at which the node touches the wall, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
     /// The node's largest contact stiffness over that of the law, `contact.stiffness`: 1 if stiffness is a node's or the node is a
     /// gauge, which acts at a point and not along a length; 0 if the wall acts along the elements.
     pub stiffness_share: f64,
-    /// The same of the damping, `contact.damping`; over 1 N s/m if that is zero and a length's need not be.
+    /// The same of the damping, `contact.damping`; over 1 N s/m if that is zero and the damping of a length is not.
     pub damping_share: f64,
     /// True if the clearance is a gauge's.
     pub is_gauge: bool,
-    /// The masses put here.
+    /// The masses at the node.
     pub unbalance: Vec<NodeUnbalance>,
 }
 
@@ -66,15 +66,15 @@ pub struct StringMesh {
 
 impl StringMesh {
     /// Cuts the string of a scenario into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
-    /// of section, tool joint, gauge and unbalance mass is a node; each stretch between two of these becomes the
+    /// of section, tool joint, gauge and unbalance mass is a node; each part between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
-    /// With the mesh `auto` depths whose motion is recorded are nodes, too. What lies within [`SNAP_FRACTION`] of the target length of a boundary is moved to it.
-    /// Two gauges that meet at one node have the smaller clearance.
+    /// With the mesh `auto`, depths whose motion is recorded are nodes, too. A place within [`SNAP_FRACTION`] of the target length of a boundary is
+    /// moved to it. Two gauges that meet at one node have the smaller clearance.
     ///
     /// # Errors
-    /// Sections without length, targets that are not positive, more than [`MAX_ELEMENTS`] elements, gauges or
-    /// masses that are not on the string.
+    /// A section has no length, a target is not positive, there are more than [`MAX_ELEMENTS`] elements, or a gauge or
+    /// mass is not on the string.
     pub fn new(scenario: &Scenario) -> Result<Self, MeshError> {
         let string = &scenario.string;
         let stretches = boundaries::stretches(scenario)?;
@@ -83,7 +83,7 @@ impl StringMesh {
         let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
         on_string("gauge", gauges.clone(), length)?;
         on_string("unbalance mass", masses.clone(), length)?;
-        // Node numbers are the user's if lengths are; elsewhere a depth is where the motion is read, on every mesh.
+        // The user numbers the nodes if lengths are given; otherwise motion is recorded at a depth, on every mesh.
         let is_recorded = |choice: &NodeChoice| match *choice {
             NodeChoice::Depth(depth) if scenario.mesh.is_auto() && is_on_string(depth, length) => Some(depth),
             NodeChoice::Depth(_) | NodeChoice::Node(_) => None,
@@ -113,8 +113,8 @@ impl StringMesh {
         Ok(mesh)
     }
 
-    /// Leaves the nodes no share of a wall whose stiffness and damping belong to a length: the elements have all of it, and gauges, which act at a
-    /// point, what they have by node.
+    /// Removes the nodes' share of a wall whose stiffness and damping belong to a length: the elements have all of it, and gauges, which act at a
+    /// point, the values by node.
     fn put_wall_by_length(&mut self, contact: &ContactLaw) {
         for node in &mut self.nodes {
             (node.stiffness_share, node.damping_share) =
@@ -171,7 +171,7 @@ pub(crate) fn is_on_string(measured_depth: f64, length: f64) -> bool {
     (-DEPTH_ROUNDING..=length + DEPTH_ROUNDING).contains(&measured_depth)
 }
 
-/// Cuts each stretch into equal elements.
+/// Cuts each part into equal elements.
 fn cut(stretches: &[boundaries::Stretch]) -> Result<Vec<MeshElement>, MeshError> {
     let mut elements = Vec::new();
     for stretch in stretches {
@@ -348,7 +348,7 @@ mod tests {
     fn a_place_inside_a_stretch_splits_it() {
         let mut scenario = paper();
         let before = StringMesh::new(&scenario).unwrap().elements.len();
-        // 2.3 m in the 4.0 m stretch: 2.3 m in 2 and 1.7 m in 2 instead of 3.
+        // 2.3 m in the 4.0 m part: 2.3 m in 2 and 1.7 m in 2 instead of 3.
         let mass = UnbalanceMass { measured_depth: 2.3, mass: 1.0, radius: 0.05, phase_deg: 90.0 };
         scenario.string.unbalance.push(mass);
         let mesh = StringMesh::new(&scenario).unwrap();
@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn a_place_next_to_a_boundary_moves_to_it() {
         let mut scenario = paper();
-        // Within 5 % of 1.5 m of the end of the first stretch, from either side; and just beyond it.
+        // Within 5 % of 1.5 m of the end of the first part, from either side; and just beyond it.
         scenario.string.gauges.push(Gauge { measured_depth: 3.93, clearance: 0.01 });
         let snapped = StringMesh::new(&scenario).unwrap();
         assert_eq!(snapped.elements.len(), 296);

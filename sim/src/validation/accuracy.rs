@@ -6,14 +6,14 @@ use super::report::Report;
 use super::window::is_whole;
 use crate::force::effect::active_effects;
 
-/// Generalized-alpha's largest spectral radius at infinity that two contact iterations are known to be safe with
+/// Generalized-alpha's largest spectral radius at infinity that is known to be safe with two contact iterations
 /// (docs/model/motion.md, Generalized-alpha).
 const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
 
-/// Smallest step \[s\] at which the implicit methods damp what friction drives in torsional modes of single elements.
+/// Smallest step \[s\] at which the implicit methods damp torsional modes of single elements that friction excites.
 const FINEST_UNDAMPED_STEP: f64 = 1e-4;
 
-/// Contact iterations beyond which a solve has long converged or never will.
+/// Number of contact iterations beyond which a solve has long converged or never will.
 const MOST_SWEEPS: u32 = 1000;
 
 pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {

@@ -7,13 +7,13 @@ use drillsweep_scenario::Scenario;
 use super::report::Report;
 use crate::string::well::{WellError, WellPath};
 
-/// Doglegs above this \[deg / 30 m\] are hardly drilled: the survey is probably wrong.
+/// Dogleg \[deg / 30 m\] above which a hole is hardly drilled: the survey is probably wrong.
 const SHARPEST_DOGLEG: f64 = 30.0;
 
 /// Diameters of holes \[m\] from those of mineral exploration to those of hole openers for conductors, 48 in.
 const USUAL_DIAMETERS: RangeInclusive<f64> = 0.05..=1.2;
 
-/// Wider holes \[m\] are shafts, which no string of pipe drills.
+/// Largest diameter of a hole \[m\]: wider ones are shafts, which no string of pipe drills.
 const WIDEST_HOLE: f64 = 5.0;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario) {

@@ -9,7 +9,7 @@ use super::report::Report;
 /// Densities of muds \[kg/m3\] from oil to the heaviest weighted ones, 21.7 lb/gal.
 const USUAL_MUD_DENSITIES: RangeInclusive<f64> = 800.0..=2600.0;
 
-/// Heavier liquids \[kg/m3\] are molten metals and mercury.
+/// Density of the heaviest mud \[kg/m3\]: heavier liquids are molten metals and mercury.
 const HEAVIEST_MUD: f64 = 10_000.0;
 
 /// Flow rates \[m3/s\] up to that of three large pumps, 1900 gal/min.
@@ -21,16 +21,16 @@ const USUAL_YIELD_STRESSES: RangeInclusive<f64> = 0.0..=100.0;
 /// Pressures \[Pa\] up to above the ratings of pumps and blowout preventers, 15,000 psi.
 const USUAL_PRESSURES: RangeInclusive<f64> = 0.0..=1.1e8;
 
-/// Speeds \[rpm\] that a string is turned at from above, either way; top drives reach 200 to 300.
+/// Usual speeds of rotation from above \[rpm\], either way; top drives reach 200 to 300.
 const USUAL_ROTATION: RangeInclusive<f64> = -400.0..=400.0;
 
-/// At this speed \[rpm\] the surface of a pipe of 0.2 m moves at 100 m/s.
+/// Largest speed of rotation \[rpm\]: with it the surface of a pipe of 0.2 m moves at 100 m/s.
 const FASTEST_ROTATION: f64 = 10_000.0;
 
-/// Axial forces at a bit \[N\], either way: the largest bits are pressed on with some 500 kN.
+/// Axial forces at a bit \[N\], either way: the largest bits carry some 500 kN.
 const USUAL_WEIGHT_ON_BIT: RangeInclusive<f64> = -6e5..=6e5;
 
-/// Ten times the hook load of the largest rigs \[N\].
+/// Largest force \[N\]: ten times the hook load of the largest rigs.
 const LARGEST_FORCE: f64 = 1e8;
 
 /// Torques \[N m\], either way, up to those of the largest top drives.
@@ -39,7 +39,7 @@ const USUAL_TORQUES: RangeInclusive<f64> = -1e5..=1e5;
 /// Friction coefficients up to that of dry steel on dry rock.
 const USUAL_FRICTION: RangeInclusive<f64> = 0.0..=1.0;
 
-/// Rubber on dry rock has 1 to 4.
+/// Largest friction coefficient: rubber on dry rock has 1 to 4.
 const LARGEST_FRICTION: f64 = 10.0;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario) {

@@ -1,4 +1,4 @@
-//! Admission of scenarios to simulation: every rule that a scenario must keep, checked all at once.
+//! Validation of scenarios: every rule for simulation, checked all at once.
 
 mod accuracy;
 mod hole;
@@ -16,17 +16,17 @@ use report::Report;
 /// Checks that a scenario can be simulated.
 ///
 /// # Errors
-/// All problems at once, each with the field's path, what it holds and what would be valid. A scenario
-/// without problems may still earn warnings about what is probably not meant.
+/// The scenario has problems; all are returned at once, each with the field's path, its value and the valid range. A scenario
+/// without problems may still have warnings of properties that are probably not meant.
 pub fn validate(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
     check(scenario, true)
 }
 
 /// Checks again a scenario whose numbers at the paths `changed` differ from those of one that was checked in full.
-/// Well, string and mesh, the costly part, are left out where none of the paths leads there.
+/// The costly part, well, string and mesh, is omitted if none of the paths leads there.
 ///
 /// # Errors
-/// As [`validate`]; what does not depend on the changed numbers may be left out, and so may warnings.
+/// As [`validate`]; problems that do not depend on the changed numbers may be missing, and so may warnings.
 pub fn validate_changes<'a>(
     scenario: &Scenario,
     changed: impl IntoIterator<Item = &'a str>,
@@ -35,7 +35,7 @@ pub fn validate_changes<'a>(
     let leads_to = |path: &str, part: &str| {
         path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
-    // How many snapshots there may be depends on the nodes.
+    // The largest number of snapshots depends on the nodes.
     let of_snapshots = scenario.recording.snapshots.is_some().then_some("duration");
     let parts = || shapes.into_iter().chain(of_snapshots);
     let mut changed = changed.into_iter();
@@ -54,7 +54,7 @@ fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems
         scenario.name.escape_default(),
         "must hold no control characters",
     );
-    // With a mesh that follows from the scenario everything may change it.
+    // A mesh that follows from the scenario may change with any number.
     let mesh = if with_shape || scenario.mesh.is_auto() {
         hole::check(&mut report, scenario);
         string::check(&mut report, scenario)

@@ -13,7 +13,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Notes a problem unless `ok`.
+    /// Adds a problem unless `ok`.
     pub(super) fn require(
         &mut self,
         ok: bool,
@@ -26,7 +26,7 @@ impl Report {
         }
     }
 
-    /// Notes a problem if a number is finite and breaks the rule. Numbers that are not finite have been reported.
+    /// Adds a problem if a number is finite and breaks the rule. Numbers that are not finite have been reported.
     pub(super) fn number(
         &mut self,
         value: f64,
@@ -37,17 +37,17 @@ impl Report {
         self.require(!value.is_finite() || rule(value), path, value, message);
     }
 
-    /// The number must be greater than 0.
+    /// Requires a number greater than 0.
     pub(super) fn positive(&mut self, value: f64, path: impl Into<String>) {
         self.number(value, path, |value| value > 0.0, "must be greater than 0");
     }
 
-    /// The number must be 0 or greater.
+    /// Requires a number of 0 or greater.
     pub(super) fn not_negative(&mut self, value: f64, path: impl Into<String>) {
         self.number(value, path, |value| value >= 0.0, "must be 0 or greater");
     }
 
-    /// Notes a warning if `doubtful`.
+    /// Adds a warning if `doubtful`.
     pub(super) fn warn(&mut self, doubtful: bool, path: impl Into<String>, message: impl Into<String>) {
         if doubtful {
             self.warnings.push(Warning { path: path.into(), message: message.into() });
@@ -77,7 +77,7 @@ impl Report {
         );
     }
 
-    /// The problems at a path, and those elsewhere.
+    /// The problems at a path, and all others.
     pub(super) fn split(self, path: &str) -> (Self, Self) {
         let of = |problems| Self { problems, warnings: Vec::new() };
         let (at, elsewhere) = self.problems.into_iter().partition(|problem| problem.path == path);
@@ -100,7 +100,7 @@ impl Report {
 
 #[cfg(test)]
 pub(super) mod testing {
-    //! Short assertions on what a changed base case is reported for.
+    //! Short assertions on the reports about a changed base case.
 
     use drillsweep_scenario::{Problem, Scenario, Warning, preset};
 
@@ -113,7 +113,7 @@ pub(super) mod testing {
         validate(&scenario).expect_err("the change should make the scenario invalid").0
     }
 
-    /// The one problem that a change gives rise to.
+    /// The one problem that a change causes.
     pub(crate) fn problem(path: &str, change: impl Fn(&mut Scenario)) -> Problem {
         let problems = problems(change);
         assert_eq!(problems.len(), 1, "{problems:?}");

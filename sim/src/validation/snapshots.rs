@@ -8,13 +8,13 @@ use crate::force::effect::active_effects;
 use crate::solve::run::SnapshotTimes;
 use crate::string::StringMesh;
 
-/// Nodes of all snapshots together at most: about 1 GB with all that is kept of a node.
+/// Largest number of nodes of all snapshots together: about 1 GB with all data of a node.
 const MOST_NODES: u64 = 1 << 25;
 
-/// Numbers of parts that are looked through for a rate of a few digits.
+/// Number of parts that are searched for a rate of a few digits.
 const LOOKED_AT: usize = 100;
 
-/// Snapshots at least: fewer show no motion.
+/// Least number of snapshots: fewer show no motion.
 const FEWEST: u64 = 2;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
@@ -78,7 +78,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
     }
 }
 
-/// In words, rates near `recorded / ratio` \[Hz\] whose snapshots are samples: whole parts of the recording rate, and such as are written in
+/// Rates, in words, near `recorded / ratio` \[Hz\] whose snapshots are samples: whole parts of the recording rate that are written in
 /// a few digits.
 fn valid_rates(recorded: f64, ratio: f64) -> String {
     if ratio < 1.0 {
@@ -148,7 +148,7 @@ mod tests {
             asking(500.0, Some((100.0, 300.0)))(s);
         };
         assert_eq!(warnings(hour), []);
-        // A sweep over the duration asks again.
+        // A sweep over the duration checks again.
         let mut scenario = preset("paper-200m").unwrap();
         (scenario.duration, scenario.recording.rate_hz) = (1200.0, 200.0);
         asking(200.0, None)(&mut scenario);

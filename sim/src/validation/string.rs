@@ -9,7 +9,7 @@ use drillsweep_scenario::{
 use super::report::Report;
 use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
 
-/// Depths of nodes and stated depths that differ by less than this \[m\] are the same.
+/// Difference \[m\] below which depths of nodes and stated depths are the same.
 const SAME_DEPTH: f64 = 1e-9;
 
 /// Outer diameters \[m\] from rods of mineral exploration to bits of 48 in.
@@ -21,13 +21,13 @@ const USUAL_MODULI: RangeInclusive<f64> = 1e10..=5e11;
 /// Densities of solids \[kg/m3\]: composite pipe has 1500 and more, tungsten 19300.
 const USUAL_DENSITIES: RangeInclusive<f64> = 1000.0..=20_000.0;
 
-/// Osmium, the densest solid, has 22600 kg/m3.
+/// Largest density of a solid: osmium, the densest one, has 22600 kg/m3.
 const DENSEST_SOLID: f64 = 23_000.0;
 
-/// Diamond, the stiffest solid, has 1.2e12 Pa.
+/// Largest Young's modulus of a solid: diamond, the stiffest one, has 1.2e12 Pa.
 const STIFFEST_SOLID: f64 = 1.5e12;
 
-/// Checks the string; gives its mesh if it can be made.
+/// Checks the string; returns its mesh if there is one.
 pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
     material(report, "string.material", &scenario.string.material);
     for i in 0..scenario.string.sections.len() {
@@ -153,7 +153,7 @@ fn mesh_targets(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-/// The string must have sections and end within the survey.
+/// Requires that the string has sections and ends within the survey.
 fn length(report: &mut Report, scenario: &Scenario) {
     let sections = &scenario.string.sections;
     report.require(
@@ -190,7 +190,7 @@ fn masses(report: &mut Report, scenario: &Scenario) {
     }
 }
 
-/// The mesh, if sections and targets allow one; reports what is not on the string and a mesh that is too fine.
+/// The mesh, if sections and targets allow one; reports places that are not on the string and a mesh that is too fine.
 fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
     let mut bare = scenario.clone();
     bare.string.gauges.clear();
@@ -241,7 +241,7 @@ fn too_fine(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-/// Clearances of gauges against what the bodies leave, and gauges and masses that will have no effect.
+/// Checks clearances of gauges next to those of the bodies, and warns of gauges and masses without effect.
 fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
     let string = &scenario.string;
     for (i, gauge) in string.gauges.iter().enumerate() {
@@ -268,7 +268,7 @@ fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
     }
 }
 
-/// Warns of a place that has moved to a boundary near by, or that is held.
+/// Warns of a place that was moved to a nearby boundary, or that is held.
 fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &StringMesh) {
     let found = mesh.nodes[node].measured_depth;
     report.warn(

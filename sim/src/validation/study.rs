@@ -7,13 +7,13 @@ use super::report::Report;
 use super::window::is_whole;
 use crate::force::effect::active_effects;
 
-/// Runs of one point at most.
+/// Largest number of runs of one point.
 pub(super) const LARGEST_ENSEMBLE: u32 = 64;
 
-/// Runs of one cost study at most.
+/// Largest number of runs of one cost study.
 const MOST_RUNS: usize = 256;
 
-/// Samples of all nodes and lines that a study compares at most: 2 GiB of lateral motion.
+/// Largest number of samples of all nodes and rows that a study compares: 2 GiB of lateral motion.
 const MOST_KEPT_SAMPLES: f64 = (1_u64 << 26) as f64;
 
 /// Fewest samples of a run whose windows are parts of its duration: a sixth of them still has a spectrum.
@@ -67,7 +67,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
             let of_step = format!("{of_method}.steps[{j}]");
             let (steps, others) = found.split("accuracy.step");
             report.take_problems(steps, "accuracy.step", &of_step);
-            // What is said of the method itself is said once.
+            // Problems of the method itself are reported once.
             if j == 0 {
                 report.take_problems(others, "accuracy", &of_method);
             }
@@ -200,7 +200,7 @@ mod tests {
         problem("cost_study.methods[0].steps[1]", of(fixed(&[1e-3, -5e-4])));
         let once = MethodSteps { contact_sweeps: 1, ..fixed(&[1e-3, 5e-4]) };
         problem("cost_study.methods[0].contact_sweeps", of(once));
-        // Nothing but the reference is no study; its presets alone are one.
+        // The reference alone is no study; presets alone are one.
         let none = CostStudy { methods: Some(Vec::new()), ..CostStudy::default() };
         assert_eq!(warnings(with(none.clone())), []);
         problem("cost_study.methods", with(CostStudy { presets: Vec::new(), ..none }));

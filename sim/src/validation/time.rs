@@ -12,13 +12,13 @@ use crate::force::effect::active_effects;
 use crate::solve::run::spectrum_windows_at_most;
 use crate::string::StringMesh;
 
-/// Samples of a node at most: half an hour at 1 kHz. Its orbit and full spectrum over the whole run are computed in memory.
+/// Largest number of samples of a node: half an hour at 1 kHz. Its orbit and full spectrum over the whole run are computed in memory.
 const MOST_SAMPLES: f64 = 2e6;
 
-/// Samples of all recorded nodes at most: 2.5 GiB of history.
+/// Largest number of samples of all recorded nodes: 2.5 GiB of history.
 const MOST_SAMPLES_OF_NODES: f64 = (1_u64 << 26) as f64;
 
-/// Spectrum windows at most.
+/// Largest number of spectrum windows.
 const MOST_WINDOWS: usize = 100;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&StringMesh>) {
@@ -120,14 +120,14 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
     }
 }
 
-/// A bound rounded down to three significant digits, as people read it.
+/// A bound rounded down to three significant digits, for messages.
 fn in_three_digits(bound: f64) -> f64 {
     let decimals = 2 - bound.log10().floor() as i32;
     let unit = 10.0_f64.powi(decimals.abs());
     if decimals > 0 { (bound * unit).floor() / unit } else { (bound / unit).floor() * unit }
 }
 
-/// The run must hold a whole number of recording intervals, and not too many.
+/// Requires that the run holds a whole number of recording intervals, and not too many.
 fn check_samples(report: &mut Report, scenario: &Scenario) {
     let (duration, rate) = (scenario.duration, scenario.recording.rate_hz);
     let samples = duration * rate;

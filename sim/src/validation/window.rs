@@ -4,7 +4,7 @@ use drillsweep_scenario::{FEWEST_SAMPLES, Scenario, TimeWindow};
 
 use super::report::Report;
 
-/// Two times that differ by less than this part of them are the same.
+/// Relative difference below which two times are the same.
 const SAME_TIME: f64 = 1e-9;
 
 pub(super) fn check_window(report: &mut Report, scenario: &Scenario, window: &TimeWindow, path: &str) {

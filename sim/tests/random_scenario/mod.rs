@@ -11,7 +11,7 @@ use drillsweep_sim::string::StringMesh;
 /// Samples of a run.
 const SAMPLES: f64 = 40.0;
 
-/// Elements at most, before gauges and masses add nodes of their own.
+/// Largest number of elements, before gauges and masses add nodes of their own.
 const MOST_ELEMENTS: f64 = 120.0;
 
 /// Scenario `index` of a seed.
@@ -50,7 +50,7 @@ pub(crate) fn random_scenario(seed: u64, index: u64) -> Scenario {
         // The rest as in the base case: one run of one point.
         ..base
     };
-    // A gauge may not be wider than what the body leaves of the hole where it stands.
+    // A gauge may not be wider than the clearance of the body at its place.
     if let Ok(mesh) = StringMesh::new(&scenario) {
         for gauge in &mut scenario.string.gauges {
             let node = mesh.nearest_node(gauge.measured_depth);
@@ -196,7 +196,7 @@ fn draw_contact(draw: &mut Draw) -> ContactLaw {
         friction_reference_speed: draw.log(1e-3, 0.3),
     };
     if draw.chance(0.3) {
-        // What a node has belongs to this length.
+        // Values of a node belong to this length.
         let length = draw.log(0.1, 10.0);
         law.law = WallLaw::PerLength;
         (law.stiffness_per_length, law.damping_per_length) =
@@ -271,22 +271,22 @@ impl Draw {
         z ^ (z >> 31)
     }
 
-    /// In \[0, 1).
+    /// A number in \[0, 1).
     fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Evenly in \[low, high).
+    /// A number in \[low, high), uniform.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// Evenly by the logarithm in \[low, high).
+    /// A number in \[low, high), uniform in its logarithm.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// Zero with a probability, else by the logarithm.
+    /// Zero with a probability, otherwise uniform in its logarithm.
     fn or_zero(&mut self, zero: f64, low: f64, high: f64) -> f64 {
         let value = self.log(low, high);
         if self.chance(zero) { 0.0 } else { value }

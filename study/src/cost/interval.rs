@@ -11,7 +11,7 @@ const CONFIDENCE: f64 = 0.95;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Contrast {
     pub(super) value: f64,
-    /// Half the width of its confidence interval; absent where an ensemble has one member only.
+    /// Half the width of its confidence interval; absent if an ensemble has one member only.
     pub(super) half_width: Option<f64>,
 }
 

@@ -171,7 +171,7 @@ fn without_agreement_there_is_no_reference_and_the_report_says_so() {
 
 #[test]
 fn a_node_without_agreement_leaves_the_others_their_reference() {
-    // A second node, where the two methods differ by a fifth.
+    // A second node, at which the two methods differ by a fifth.
     let with_second = |mut first: Measure, size: f64| {
         let mut second = sized(size).nodes.remove(0);
         second.measured_depth = 80.0;

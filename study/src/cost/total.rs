@@ -275,7 +275,7 @@ mod tests {
             for order in [0.5, 1.0, 2.0, 3.7] {
                 for amplitude in [0.05, -0.05] {
                     let (found, p) = limit(h, values(h, 0.7, amplitude, order)).unwrap();
-                    // Differences of 0.05 h^p lose so many digits of a double, and order and limit share the loss.
+                    // Differences of 0.05 h^p lose some digits of a double, and order and limit share the loss.
                     assert!((p - order).abs() < 1e-9, "{h:?} {order}: {p}");
                     assert!((found - 0.7).abs() < 1e-10, "{h:?} {order}: {found}");
                 }

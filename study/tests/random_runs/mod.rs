@@ -31,12 +31,12 @@ pub(crate) enum RunEnd {
         /// The whole reason, with time and node if there are any.
         reason: String,
     },
-    /// Breach of the contract: a number is not finite, the ledger is out of its bound, or the scenario was refused.
+    /// A breach of the contract: a number is not finite, the ledger is out of its bound, or the scenario was refused.
     Broken {
         /// Breach of the contract.
         reason: String,
     },
-    /// It was cancelled.
+    /// The run was cancelled.
     Cancelled,
 }
 

@@ -1,5 +1,5 @@
-//! Random scenarios with stick-slip, and whether a run of `standard` is right or says that it may not be: judged by RK4 at 0.95 of its stability
-//! limit, a method of another kind.
+//! Random scenarios with stick-slip, whose runs of `standard` must be right or report that they may be wrong: judged by RK4 at 0.95 of its stability
+//! limit, an independent method.
 
 #![allow(dead_code, unreachable_pub)]
 
@@ -22,28 +22,28 @@ use random_scenario::random_scenario;
 #[path = "../../../sim/tests/random_scenario/mod.rs"]
 mod random_scenario;
 
-/// Part of its stability limit that RK4's steps have at most.
+/// Largest step of RK4, as part of its stability limit.
 const BELOW_LIMIT: f64 = 0.95;
 
-/// Stiffness-proportional damping \[s\] that ends torsion before the mesh does, as in the damped base case.
+/// Stiffness-proportional damping \[s\] that limits torsion below the mesh's highest frequency, as in the damped base case.
 const CLOSING_DAMPING: f64 = 3e-5;
 
 /// Verdict on a run of `standard` in a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Judgement {
-    /// The scenario is none to judge: no equilibrium, no stick-slip, or RK4 would take too long.
+    /// The scenario is not judged: it has no equilibrium or no stick-slip, or RK4 would take too long.
     Passed(&'static str),
-    /// The run ends as failed, which says that it has no result.
+    /// The run failed, and so reports that it has no result.
     Failed,
     /// The run has a result, with its errors in size and deviation relative to RK4's, the worst nodes.
     Known {
-        /// Of orbit size.
+        /// Error of orbit size.
         size: f64,
-        /// Of the radius' standard deviation.
+        /// Error of the radius' standard deviation.
         deviation: f64,
-        /// The error that the run states; absent where it says that it is not known.
+        /// The error that the run states; absent if it states that the error is not known.
         stated: Option<f64>,
-        /// By how much the scenario amplifies a disturbance; absent where the twin diverged.
+        /// Amplification of a disturbance by the scenario; absent if the twin diverged.
         amplification: Option<f64>,
     },
 }
@@ -62,8 +62,8 @@ impl Judgement {
     }
 }
 
-/// Scene `index` of a seed, long enough for stick-slip: in the middle of the range of rotation speeds, closed by damping, without tool joints
-/// and on elements of `element` \[m\], whose axial frequency is what RK4's steps depend on.
+/// Scenario `index` of a seed, long enough for stick-slip: in the middle of the range of rotation speeds, closed by damping, without tool joints
+/// and on elements of `element` \[m\], whose axial frequency limits RK4's steps.
 pub fn long_scenario(seed: u64, index: u64, duration: f64, element: f64) -> Scenario {
     let mut scenario = random_scenario(seed, index);
     scenario.effects = Effects::default();

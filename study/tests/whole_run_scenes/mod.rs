@@ -1,4 +1,4 @@
-//! Whole runs through stick-slip and impacts at reduced size, and what is read of them.
+//! Whole runs through stick-slip and impacts at reduced size, and their statistics.
 
 #![allow(dead_code, unreachable_pub)]
 
@@ -20,7 +20,7 @@ use drillsweep_study::errors::{OtherMember, ResultErrors, TimeError};
 use drillsweep_study::mesh_estimate::MeshEstimate;
 use drillsweep_study::summary::TransientSummary;
 
-/// Window that is read: the last third of a run \[s\].
+/// Window of the statistics: the last third of a run \[s\].
 const WINDOW: TimeWindow = TimeWindow { from: 20.0, to: 30.0 };
 
 /// The paper's string without its tool joints, on a coarse mesh, with damping that closes the model. It begins to stick and slip after some
@@ -51,7 +51,7 @@ pub fn reduced() -> Scenario {
     scenario
 }
 
-/// Scenes by name, that of the base case first.
+/// Scenarios by name, the base case first.
 pub fn scenes() -> Vec<(&'static str, Scenario)> {
     let scene = |name: &'static str, change: &dyn Fn(&mut Scenario)| {
         let mut scenario = reduced();
@@ -119,7 +119,7 @@ pub fn scenes() -> Vec<(&'static str, Scenario)> {
     ]
 }
 
-/// Values read of a recorded node.
+/// Statistics of a recorded node.
 #[derive(Debug, Clone, Copy)]
 pub struct Read {
     /// Orbit size, standard deviation of the radius and mean radius \[m\].
@@ -130,7 +130,7 @@ pub struct Read {
     pub torsion: f64,
 }
 
-/// A run and what is read of it.
+/// A run and its statistics.
 pub struct WholeRun {
     pub records: Records,
     pub summary: TransientSummary,
@@ -170,19 +170,19 @@ impl WholeRun {
         Self { read, summary, torsion: UndampedTorsion::about(&model, &equilibrium), records }
     }
 
-    /// By RK4 with steps near the limit of its stability.
+    /// A run by RK4 with steps near the limit of its stability.
     pub fn by_rk4(scenario: &Scenario) -> Self {
         let step = if scenario.contact.stiffness > 5e7 { 5e-5 } else { 1e-4 };
         Self::of(scenario, Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, step)), 0)
     }
 
-    /// By ESDIRK4 with fixed steps \[s\] and converged contact iterations.
+    /// A run by ESDIRK4 with fixed steps \[s\] and converged contact iterations.
     pub fn by_esdirk4(scenario: &Scenario, step: f64) -> Self {
         let fixed = TimeStepping::fixed(Integrator::Esdirk4, step);
         Self::of(scenario, Accuracy::Explicit(TimeStepping { contact_sweeps: 20, ..fixed }), 0)
     }
 
-    /// The error by steps that a result would tell, with other members of its ensemble.
+    /// The error by steps that a result would state, with other members of its ensemble.
     pub fn time_error(&self, others: &[WholeRun]) -> TimeError {
         let samples = window(&self.records);
         let others: Vec<_> = others

@@ -7,7 +7,7 @@ use super::geometry::FlowGeometry;
 /// Viscous damping of a pipe that whirls at the speed of rotation in a concentric hole, equation (29):
 /// k = 2 sqrt(2) / sqrt(S) (1 + kappa^3) / (1 - kappa^2)^2 rho A_o Omega \[N s/m2\], S = Omega D_o^2 / (4 nu_f).
 ///
-/// `viscosity` is nu_f \[m2/s\]; the sense of the rotation does not matter. Boundary-layer solution, good where
+/// `viscosity` is nu_f \[m2/s\]; the sense of the rotation does not matter. Boundary-layer solution, good if
 /// sqrt(S) (1 - kappa) / kappa is much larger than 1: 5 to 8 % low in a drilling annulus.
 pub(super) fn rotation_damping(
     density: f64,

@@ -12,7 +12,7 @@ pub struct Block<const D: usize = DOFS> {
     pub columns: [[f64; D]; D],
 }
 
-/// A sum of products of blocks and vectors in two parts; half as many additions wait for each other as in one.
+/// A sum of products of blocks and vectors in two parts, so that half as many additions wait for each other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sum<const D: usize>([[f64; D]; 2]);
 
@@ -81,7 +81,7 @@ impl<const D: usize> Block<D> {
         self.add_product(x, Sum([sum, [0.0; D]])).total()
     }
 
-    /// `sum + self x`, not added up yet.
+    /// `sum + self x` in its parts.
     #[inline(always)]
     pub(super) fn add_product(&self, x: &[f64; D], Sum(mut parts): Sum<D>) -> Sum<D> {
         for (j, column) in self.columns.iter().enumerate() {
@@ -118,7 +118,7 @@ impl<const D: usize> Block<D> {
         negated
     }
 
-    /// The largest magnitude of an entry that is a number.
+    /// The largest magnitude of an entry; entries that are not numbers are ignored.
     pub(super) fn largest(&self) -> f64 {
         self.columns.as_flattened().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
     }
@@ -128,7 +128,7 @@ impl<const D: usize> Block<D> {
         self.columns.as_flattened().iter().all(|entry| entry.is_finite())
     }
 
-    /// The inverse by Gauss-Jordan elimination with partial pivoting, and the smallest pivot's magnitude. A singular block gives a pivot
+    /// The inverse by Gauss-Jordan elimination with partial pivoting, and the smallest pivot's magnitude. A singular block yields a pivot
     /// of zero (or not a number) and no usable inverse.
     pub(super) fn inverse(&self) -> (Self, f64) {
         let mut columns = self.columns;
@@ -145,7 +145,7 @@ impl<const D: usize> Block<D> {
                 }
             }
             smallest_pivot = columns[pivot][pivot].abs().min(smallest_pivot);
-            // What the pivot row, scaled to a pivot of one, adds to every row; itself in place of the pivot row.
+            // The pivot row's contribution, with its pivot scaled to one, to every row; in place of the pivot row the row itself.
             let mut multipliers = columns[pivot].map(|multiplier| -multiplier);
             multipliers[pivot] = 1.0;
             let reciprocal = 1.0 / columns[pivot][pivot];

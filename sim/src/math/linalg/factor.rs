@@ -9,14 +9,14 @@ use crate::math::dof::DOFS;
 
 /// A factored [`BlockTridiagonal`], ready to solve.
 ///
-/// The elimination is twisted: rows are eliminated from both ends towards the middle one, which gives two
+/// The elimination is twisted: rows are eliminated from both ends towards the middle one, in two
 /// chains that do not wait for each other. There is no pivoting across blocks (inside a block there is), so a
-/// matrix can be regular and still fail; [`Factor::growth`] measures how much was lost.
+/// regular matrix can still fail; [`Factor::growth`] measures the loss of precision.
 #[derive(Debug, Clone)]
 pub struct Factor<const D: usize = DOFS> {
-    /// From the top end, in the order of elimination.
+    /// Rows eliminated from the top end, in the order of elimination.
     top: Chain<D>,
-    /// From the bottom end, in the order of elimination.
+    /// Rows eliminated from the bottom end, in the order of elimination.
     bottom: Chain<D>,
     middle: Elimination<D>,
     /// `-S^-1 U` of the middle row, S its pivot block.
@@ -32,7 +32,7 @@ struct Chain<const D: usize = DOFS> {
     inward: Vec<SplitBlock<D>>,
 }
 
-/// Blocks that eliminating a row leaves for the way inwards; S is its pivot block.
+/// Blocks that eliminating a row leaves for the way inwards; S is the row's pivot block.
 #[derive(Debug, Clone, Copy)]
 struct Elimination<const D: usize = DOFS> {
     /// `S^-1`.
@@ -45,7 +45,7 @@ impl<const D: usize> Factor<D> {
     /// Factors a matrix of at least one row.
     ///
     /// # Errors
-    /// The row whose pivot block is singular to working precision, or holds values that are not finite.
+    /// A pivot block is singular to working precision, or holds values that are not finite; the error names its row.
     pub fn new(matrix: &BlockTridiagonal<D>) -> Result<Self, SingularBlock> {
         let rows = matrix.rows();
         assert!(rows > 0, "a matrix without rows");
@@ -106,8 +106,8 @@ impl<const D: usize> Factor<D> {
         self.solve_with(|_, x| *x, x, |_, value, x| *x = value);
     }
 
-    /// Takes the rows of the right-hand side from `right`, their numbers given, and hands those of the solution to `put`. Both also get
-    /// the row's place in `between`, which holds what the way inwards leaves for the way outwards.
+    /// Reads the rows of the right-hand side from `right`, by their numbers, and passes those of the solution to `put`. Both also get
+    /// the row's place in `between`, which holds intermediate values from the way inwards for the way outwards.
     #[inline(always)]
     fn solve_with(
         &self,
@@ -153,7 +153,7 @@ impl<const D: usize> Factor<D> {
 }
 
 impl<const D: usize> Factor<D> {
-    /// Solves `A x = b`; `between` is room for as many rows.
+    /// Solves `A x = b`; `between` is scratch of as many rows.
     ///
     /// # Panics
     /// An argument has another number of rows than the matrix.

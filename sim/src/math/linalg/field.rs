@@ -1,4 +1,4 @@
-//! Nodal vectors as a time step takes them: four nodes at a time.
+//! Nodal vectors for a time step: four nodes at a time.
 
 use std::ops::{Index, IndexMut};
 
@@ -10,12 +10,12 @@ const LANES: usize = Four::LANES;
 
 /// Values of D degrees of freedom at every node, those of four neighbouring nodes side by side.
 ///
-/// Places beyond the last node hold zeros, and so do a group of four before the first and one after the last: every node has neighbours
-/// to read. Sums of fields, scaled, keep them zero.
+/// Places beyond the last node hold zeros, and so do a group of four before the first and one after the last, so that every node has
+/// neighbours. Scaled sums of fields keep them zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodalField<const D: usize = DOFS> {
     nodes: usize,
-    /// With the groups of zeros.
+    /// Groups of four nodes, including the groups of zeros.
     groups: Vec<[Four; D]>,
 }
 
@@ -23,12 +23,12 @@ pub struct NodalField<const D: usize = DOFS> {
 pub type Neighbourhood<'a, const D: usize> = &'a [[Four; D]; 3];
 
 impl<const D: usize> NodalField<D> {
-    /// Zeros.
+    /// A field of zeros.
     pub fn zeros(nodes: usize) -> Self {
         Self { nodes, groups: vec![[Four::splat(0.0); D]; nodes.div_ceil(LANES) + 2] }
     }
 
-    /// The values of each node in turn.
+    /// A field from the values of each node in turn.
     pub fn from_nodes(nodes: &[[f64; D]]) -> Self {
         let mut field = Self::zeros(nodes.len());
         field.copy_from_nodes(nodes);
@@ -68,7 +68,7 @@ impl<const D: usize> NodalField<D> {
         }
     }
 
-    /// Takes over the values of each node in turn.
+    /// Copies the values of each node in turn.
     ///
     /// # Panics
     /// The number of nodes differs.
@@ -85,7 +85,7 @@ impl<const D: usize> NodalField<D> {
         }
     }
 
-    /// Hands out the values of each node in turn.
+    /// Copies the values of each node in turn to `nodes`.
     ///
     /// # Panics
     /// The number of nodes differs.
@@ -96,7 +96,7 @@ impl<const D: usize> NodalField<D> {
         }
     }
 
-    /// Takes over the values of another field of as many nodes.
+    /// Copies the values of another field with the same number of nodes.
     ///
     /// # Panics
     /// The number of nodes differs.
@@ -105,7 +105,7 @@ impl<const D: usize> NodalField<D> {
         self.groups.copy_from_slice(&other.groups);
     }
 
-    /// Every degree of freedom of four nodes after the other; the last group may have fewer nodes, and zeros in their places.
+    /// Values of four nodes, one degree of freedom after the other; the last group may have fewer nodes, with zeros in their places.
     #[inline(always)]
     pub fn groups(&self) -> &[[Four; D]] {
         &self.groups[1..self.groups.len() - 1]
@@ -118,7 +118,7 @@ impl<const D: usize> NodalField<D> {
         &mut self.groups[1..groups - 1]
     }
 
-    /// The groups with those before and after them.
+    /// The groups with their neighbours before and after.
     #[inline(always)]
     pub fn neighbourhoods(&self) -> impl Iterator<Item = Neighbourhood<'_, D>> {
         self.groups.array_windows()
@@ -127,13 +127,13 @@ impl<const D: usize> NodalField<D> {
     /// A group; zeros after the last one.
     ///
     /// # Panics
-    /// More than one place after the last group.
+    /// The group is more than one place after the last.
     #[inline(always)]
     pub fn padded(&self, group: usize) -> &[Four; D] {
         &self.groups[1 + group]
     }
 
-    /// A group with those before and after it.
+    /// A group with its neighbours before and after.
     #[inline(always)]
     pub fn neighbourhood(&self, group: usize) -> Neighbourhood<'_, D> {
         match self.groups[group..].first_chunk() {
@@ -190,7 +190,7 @@ pub fn next_lane(own: Four, next: Four) -> Four {
     Four::new([b, c, d, first])
 }
 
-/// From node by node to degree of freedom by degree of freedom.
+/// Transposes four nodes, from node by node to degree of freedom by degree of freedom.
 #[inline(always)]
 fn by_freedom<const D: usize>(nodes: &[[f64; D]; LANES]) -> [Four; D] {
     let [a, b, c, d] = nodes;
@@ -200,7 +200,7 @@ fn by_freedom<const D: usize>(nodes: &[[f64; D]; LANES]) -> [Four; D] {
     )
 }
 
-/// From degree of freedom by degree of freedom to node by node.
+/// Transposes four nodes, from degree of freedom by degree of freedom to node by node.
 #[inline(always)]
 fn by_node<const D: usize>(freedoms: &[Four; D]) -> [[f64; D]; LANES] {
     let first = |dof: usize| if dof < D { freedoms[dof] } else { Four::splat(0.0) };
@@ -212,7 +212,7 @@ fn by_node<const D: usize>(freedoms: &[Four; D]) -> [[f64; D]; LANES] {
     [node(0, a), node(1, b), node(2, c), node(3, d)]
 }
 
-/// The first four values of a node, zeros where it has fewer.
+/// The first four values of a node, with zeros if it has fewer.
 #[inline(always)]
 fn head<const D: usize>(node: &[f64; D]) -> Four {
     let at = |dof: usize| if dof < D { node[dof] } else { 0.0 };

@@ -6,7 +6,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 /// One value for each of [`Lane::LANES`] nodes.
 ///
 /// Every operation acts on each lane alone and rounds as the same operation of one `f64` does, so a lane's
-/// bits do not depend on how many others lie beside it. Code over lanes chooses by [`Lane::select`] and may
+/// bits do not depend on the number of other lanes. Code over lanes chooses by [`Lane::select`] and may
 /// branch on [`Mask::any`] only to skip work that would change nothing.
 pub trait Lane:
     Copy
@@ -47,25 +47,25 @@ pub trait Lane:
     /// The magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
 
-    /// Lanes where `self < other`.
+    /// Lanes with `self < other`.
     fn less_than(self, other: Self) -> Self::Mask;
 
     /// `if_true` in the lanes of the mask, `if_false` in the others.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
 
-    /// Lanes where `self > other`.
+    /// Lanes with `self > other`.
     #[inline(always)]
     fn greater_than(self, other: Self) -> Self::Mask {
         other.less_than(self)
     }
 
-    /// The smaller value; `other` where one is not a number.
+    /// The smaller value; `other` if one is not a number.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(self.less_than(other), self, other)
     }
 
-    /// The larger value; `other` where one is not a number.
+    /// The larger value; `other` if one is not a number.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(other.less_than(self), self, other)
@@ -136,7 +136,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     fn lane(self, lane: usize) -> bool;
 }
 
-/// From here on the series is summed; what nine terms leave out is below x^-20 / 21.
+/// Value from which the series is summed; nine terms leave a remainder below x^-20 / 21.
 const FAR: f64 = 8.0;
 
 /// Coefficients of x^-18 to x^-2 in x (pi/2 - atan x), less its leading one.

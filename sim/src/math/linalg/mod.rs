@@ -4,9 +4,10 @@
 //! [`BlockTridiagonal`] of [`Block`]s of as many rows as a node has degrees of freedom, factored once by [`Factor`].
 //!
 //! A time step holds four neighbouring nodes of one string side by side in a [`NodalField`], and multiplies by a [`MatrixPair`] or takes
-//! the form of a [`SkewPart`]. Laws of a node are written over a [`Lane`], one node or [`Four`], with the same operations in the same order. Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
+//! the form of a [`SkewPart`]. Laws of a node are written over a [`Lane`], one node or [`Four`], with the same operations in the same order.
+//! Only [`Factor::solve_field`], a recurrence along the string, goes node by node.
 
-/// The body for every degree of freedom in turn, written out: left to itself, the compiler keeps a loop and counts entries in it.
+/// The body for every degree of freedom in turn, unrolled: otherwise the compiler keeps a loop with a counter.
 macro_rules! each_dof {
     ($count:expr, $dof:ident, $body:block) => {
         each_dof!($count, $dof, $body, 0 1 2 3 4 5)

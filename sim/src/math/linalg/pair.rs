@@ -1,4 +1,4 @@
-//! Two matrices whose products with two vectors are wanted together.
+//! Two matrices whose products with two vectors are computed together.
 
 use std::marker::PhantomData;
 
@@ -12,12 +12,12 @@ use crate::math::dof::{BENDING_ROTATIONS, DOFS};
 const LANES: usize = Four::LANES;
 
 /// Two block-tridiagonal matrices A and B of the same size, copied so that the entries of four neighbouring rows lie side by side
-/// and both pass through the processor in one stream: reading them is what a product costs. So of a [`Symmetric`] A only half is
-/// kept, and of both not what couples the twist with the displacements where that is zero everywhere.
+/// and both pass through the processor in one stream: reading them is the cost of a product. Therefore only half of a [`Symmetric`] A is
+/// kept, and in both the coupling of the twist with the displacements is omitted if it is zero everywhere.
 #[derive(Debug, Clone)]
 pub struct MatrixPair<A, const D: usize = DOFS> {
     rows: usize,
-    /// Of every four rows in turn, first those of A, then those of B.
+    /// Entries by groups of four rows: first those of A, then those of B.
     entries: Vec<Four>,
     /// True if the last degree of freedom couples with all others, false if with the two before it alone.
     last_couples: bool,
@@ -35,10 +35,10 @@ pub trait Storage<const D: usize> {
     /// Number of entries of four block rows.
     fn count(last_couples: bool) -> usize;
 
-    /// Adds those of the rows from `first` on, zeros beyond the last one.
+    /// Adds the entries of the rows from `first` on, zeros beyond the last one.
     fn store(matrix: &BlockTridiagonal<D>, first: usize, last_couples: bool, entries: &mut Vec<Four>);
 
-    /// Their product with x.
+    /// Product of the entries with x.
     fn product<const LAST: bool>(
         entries: &[Four],
         x: Neighbourhood<'_, D>,
@@ -110,7 +110,7 @@ impl<A: Storage<D>, const D: usize> MatrixPair<A, D> {
     }
 }
 
-/// Any matrix, by columns: of a column the blocks below, on and above the diagonal.
+/// Any matrix, by columns: the blocks below, on and above the diagonal of a column.
 #[derive(Debug, Clone, Copy)]
 pub struct General;
 
@@ -151,12 +151,12 @@ impl<const D: usize> Storage<D> for General {
     }
 }
 
-/// A symmetric matrix, by columns: of a column the blocks on and above the diagonal; what stands below it is not looked at.
+/// A symmetric matrix, by columns: the blocks on and above the diagonal of a column; those below it are not read.
 #[derive(Debug, Clone, Copy)]
 pub struct Symmetric;
 
 impl<const D: usize> Storage<D> for Symmetric {
-    /// The products of the transposed blocks above the diagonal with the nodes of the rows before, which the next rows get.
+    /// The products of the transposed blocks above the diagonal with the nodes of the rows before, which are added to the next rows.
     type Carried = [Four; D];
     const NOTHING: [Four; D] = [Four::ZERO; D];
 
@@ -215,7 +215,7 @@ const fn block_count<const D: usize>(last_couples: bool) -> usize {
     if last_couples { D * D } else { D * D - 2 * (D - 1 - BENDING_ROTATIONS) }
 }
 
-/// One entry of four blocks from `first` on; zeros where there is no block.
+/// One entry of four blocks from `first` on; zeros without a block.
 fn side_by_side<const D: usize>(
     blocks: &[Block<D>],
     start: usize,

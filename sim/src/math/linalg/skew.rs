@@ -9,18 +9,18 @@ use crate::math::dof::{BENDING_ROTATIONS, DOFS};
 
 const LANES: usize = Four::LANES;
 
-/// `(m - m^T) / 2`, four rows side by side, where there is any.
+/// `(m - m^T) / 2`, four rows side by side; only groups with entries are kept.
 #[derive(Debug, Clone)]
 pub struct SkewPart<const D: usize = DOFS> {
     groups: Vec<Rows>,
-    /// Of every group in turn, row by row: the entries of the blocks above the diagonal, then those right of the diagonal of the blocks
-    /// on it. Below stands minus the transposed.
+    /// Entries by groups, row by row: those of the blocks above the diagonal, then those right of the diagonal of the blocks
+    /// on it. The entries below are minus the transposed.
     entries: Vec<Four>,
     /// True if the last degree of freedom takes part: a follower torque does not couple the twist with anything.
     last_couples: bool,
 }
 
-/// Four rows.
+/// A group of four rows.
 #[derive(Debug, Clone)]
 struct Rows {
     group: usize,
@@ -132,7 +132,7 @@ fn product<const D: usize, const LAST: bool, const BENDING: bool>(
     gained - lost
 }
 
-/// Adds what the blocks of the same nodes or those of the next ones gain and lose: to the left `v` and `x` of the nodes, to the right those of
+/// Adds the contributions of the blocks of the same nodes or of the next ones: to the left `v` and `x` of the nodes, to the right those of
 /// the nodes coupled with them.
 #[inline(always)]
 fn add_block<const D: usize, const LAST: bool, const BENDING: bool, const SAME: bool>(
@@ -156,7 +156,7 @@ fn add_block<const D: usize, const LAST: bool, const BENDING: bool, const SAME: 
     });
 }
 
-/// Places of the entries that are kept, whether of the same node or the next one, row and column: in the order in which they are kept.
+/// Places of the entries that are kept, in their order: of the same node or the next one, row and column.
 fn coupled_entries<const D: usize>(
     last_couples: bool,
     only_bending: bool,
@@ -173,7 +173,7 @@ const fn count<const D: usize>(last_couples: bool, only_bending: bool) -> usize 
         + count_in_block::<D>(true, last_couples, only_bending)
 }
 
-/// Number of those that are of the same node, or of the next one.
+/// Number of entries of the same node, or of the next one.
 const fn count_in_block<const D: usize>(same_node: bool, last_couples: bool, only_bending: bool) -> usize {
     let (mut count, mut place) = (0, 0);
     while place < D * D {

@@ -1,17 +1,18 @@
-//! Blocks as a solve reads them.
+//! Blocks in the layout of a solve.
 
 use super::block::Block;
 use super::four::Four;
 use super::lane::Lane;
 
-/// A block that is multiplied over and over, kept the way that is read fastest. Columns of six rows fill a register and a half, and some would lie across two cache lines; so the rows from the
+/// A block that is multiplied many times, in the layout with the fastest reads. Columns of six rows fill a register and a half, and some would
+/// lie across two cache lines; therefore the rows from the
 /// fifth on lie apart, those of two columns in one register. Even columns add up in one sum and odd ones in another, and these are added in
 /// the end, as in products of [`Block`]: the bits are the same.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SplitBlock<const D: usize> {
     /// The first four rows of each column.
     heads: [Four; D],
-    /// The other rows of columns 0 and 1, 2 and 3, 4 and 5; zeros where there are none.
+    /// The other rows of columns 0 and 1, 2 and 3, 4 and 5; zeros for missing rows.
     tails: [Four; 3],
 }
 

@@ -106,7 +106,7 @@ fn products_of_pairs_equal_dense_products() {
 #[test]
 fn forms_of_the_skew_part_equal_dense_ones() {
     let mut numbers = Numbers(9);
-    // What couples: all, all but the twist, or displacements with rotations at all nodes but the fifth and sixth.
+    // Couplings: all, all but the twist, or displacements with rotations at all nodes but the fifth and sixth.
     let zero_at: [fn(usize, usize, usize) -> bool; 3] = [
         |_, _, _| false,
         |_, i, j| i.max(j) == 5,
@@ -328,7 +328,7 @@ fn values_that_are_not_finite_are_reported() {
 }
 
 /// A regular matrix whose leading block is nearly singular: block elimination without pivoting across blocks
-/// loses what `growth` says.
+/// loses the precision that `growth` reports.
 #[test]
 fn growth_measures_the_loss_of_precision() {
     let mut numbers = Numbers(6);

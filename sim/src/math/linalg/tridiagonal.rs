@@ -9,20 +9,20 @@ use crate::math::dof::{BENDING_ROTATIONS, DOFS};
 /// A square matrix of n x n blocks, zero but on three diagonals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockTridiagonal<const D: usize = DOFS> {
-    /// `lower[i]` stands at (i, i - 1); `lower[0]` takes no part.
+    /// `lower[i]` is at (i, i - 1); `lower[0]` is unused.
     pub lower: Vec<Block<D>>,
-    /// `diagonal[i]` stands at (i, i).
+    /// `diagonal[i]` is at (i, i).
     pub diagonal: Vec<Block<D>>,
-    /// `upper[i]` stands at (i, i + 1); the last one takes no part.
+    /// `upper[i]` is at (i, i + 1); the last one is unused.
     pub upper: Vec<Block<D>>,
 }
 
 /// Blocks of the inverse of a [`BlockTridiagonal`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseBands<const D: usize = DOFS> {
-    /// `diagonal[i]` stands at (i, i).
+    /// `diagonal[i]` is at (i, i).
     pub diagonal: Vec<Block<D>>,
-    /// `upper[i]` stands at (i, i + 1); the last one takes no part.
+    /// `upper[i]` is at (i, i + 1); the last one is unused.
     pub upper: Vec<Block<D>>,
 }
 
@@ -105,11 +105,11 @@ impl<const D: usize> BlockTridiagonal<D> {
         sum.total()
     }
 
-    /// The blocks on the diagonal of the inverse, and those above it: row i's stands at (i, i + 1), the last one takes no part.
+    /// The blocks on the diagonal of the inverse, and those above it: row i's is at (i, i + 1), the last one is unused.
     ///
     /// Eliminating all rows above and below row i leaves the pivot `S_i + T_i - A_ii` there, S being the pivots of an elimination from
-    /// the top and T those of one from the bottom; its inverse is the block on the diagonal. The one above the next row's is `-S_i^-1 A_i,i+1` times
-    /// that row's.
+    /// the top and T those of one from the bottom; its inverse is the block on the diagonal. The block above the next row's diagonal block is
+    /// `-S_i^-1 A_i,i+1` times that diagonal block.
     ///
     /// # Errors
     /// A pivot block is singular.

@@ -1,9 +1,9 @@
-//! Motion over a whole run, and whether it has settled.
+//! Motion over a whole run, and its settling.
 //!
 //! Regular motion (a few base frequencies and their combinations) settles when statistics of consecutive windows agree. They are weighted by
 //! Hann's window: weighted means of such motion converge faster than any power of the window's length, plain ones with its inverse (Das,
 //! Saiki, Sander and Yorke 2017, "Quantitative quasiperiodicity"; Duignan and Meiss 2023, "Distinguishing between regular and chaotic orbits
-//! of flows by the weighted Birkhoff average"). Means of irregular motion scatter whatever the weights; their interval is that of batch
+//! of flows by the weighted Birkhoff average"). Means of irregular motion scatter with any weights; their interval is that of batch
 //! means (Law and Kelton, "Simulation modeling and analysis", chapter 9).
 
 use std::ops::Range;
@@ -19,22 +19,22 @@ const LENGTHS: [f64; 3] = [20.0, 40.0, 80.0];
 /// The longest of them \[s\].
 pub const LONGEST_WINDOW: f64 = LENGTHS[LENGTHS.len() - 1];
 
-/// Beats of the closest pair of strong lines that a window holds at least.
+/// Least number of beats of the closest pair of strong lines in a window.
 const BEATS: f64 = 2.0;
 
-/// The end of the run \[s\] whose lines are looked at for beats: long enough to part lines that beat in 20 s.
+/// Length of the end of the run \[s\] whose lines are searched for beats: long enough to separate lines that beat in 20 s.
 const LINES_OF: f64 = 40.0;
 
-/// Amplitude of a strong line relative to the strongest. A weaker pair moves an orbit's size by less than a per cent in the course of its beat.
+/// Amplitude of a strong line relative to the strongest. A weaker pair changes an orbit's size by less than a per cent in the course of its beat.
 const STRONG: f64 = 0.1;
 
-/// Lines nearer to each other than so many bins are one.
+/// Distance in bins below which two lines are one.
 const APART: f64 = 1.5;
 
 /// Share of the strongest line's power from which a line is one of the base frequencies.
 const BASE_POWER: f64 = 0.01;
 
-/// Largest multiple of the strongest line that another one is taken for: friction makes a long row of them.
+/// Largest multiple of the strongest line by which another one is explained: friction produces many of them.
 const LARGEST_MULTIPLE: i32 = 12;
 
 /// Batches of irregular motion.
@@ -58,16 +58,16 @@ pub struct Course {
     before: usize,
     /// Lateral displacements u and v of each node \[m\].
     orbits: Vec<[Vec<f64>; 2]>,
-    /// Rate of twist at the bit \[rad/s\]; empty where torsion is not solved for.
+    /// Rate of twist at the bit \[rad/s\]; empty if torsion is not solved for.
     twist_rate: Vec<f64>,
 }
 
-/// Relative differences of statistics that count as none, and motion that is too small to be compared with itself.
+/// Relative differences of statistics that count as none, and least sizes of motion for relative differences.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Allowed {
-    /// Of orbit sizes, and of the standard deviation of the rotation speed.
+    /// Difference of orbit sizes, and of the standard deviation of the rotation speed.
     pub orbit_size: f64,
-    /// Of standard deviations of the radius.
+    /// Difference of standard deviations of the radius.
     pub radius_deviation: f64,
     /// Smaller orbits and deviations \[m\] count as this large.
     pub smallest_orbit: f64,
@@ -78,11 +78,11 @@ pub struct Allowed {
 /// Three windows whose statistics agree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
-    /// The start of the first.
+    /// Start of the first window.
     pub since: usize,
-    /// The last.
+    /// The last window.
     pub window: Range<usize>,
-    /// The largest relative difference between orbit sizes of any two of them.
+    /// The largest relative difference between orbit sizes of any two windows.
     pub differ: f64,
 }
 
@@ -116,8 +116,8 @@ impl Statistic {
 }
 
 impl Course {
-    /// An empty course of so many nodes, with or without the bit's rate of twist, that begins `before` samples at `rate_hz` after the start
-    /// and has room for `samples`.
+    /// An empty course of `nodes` nodes, with or without the bit's rate of twist, that begins `before` samples at `rate_hz` after the start
+    /// and has capacity for `samples`.
     pub fn new(rate_hz: f64, before: usize, nodes: usize, has_bit: bool, samples: usize) -> Self {
         let series = || Vec::with_capacity(samples);
         Self {
@@ -128,14 +128,14 @@ impl Course {
         }
     }
 
-    /// Makes room for so many samples in all.
+    /// Reserves capacity for a total number of samples.
     pub fn reserve(&mut self, samples: usize) {
         let has_bit = !self.twist_rate.is_empty();
         let series = self.orbits.iter_mut().flatten().chain(has_bit.then_some(&mut self.twist_rate));
         series.for_each(|series| series.reserve_exact(samples.saturating_sub(series.len())));
     }
 
-    /// Adds a sample: u and v \[m\] of each node, and the rate of twist at the bit \[rad/s\] where the course has it.
+    /// Adds a sample: u and v \[m\] of each node, and the rate of twist at the bit \[rad/s\] if the course has it.
     pub fn push(&mut self, orbits: impl Iterator<Item = [f64; 2]>, twist_rate: Option<f64>) {
         for ([along_u, along_v], [u, v]) in self.orbits.iter_mut().zip(orbits) {
             along_u.push(u);
@@ -164,13 +164,13 @@ impl Course {
         &self.orbits
     }
 
-    /// Rate of twist at the bit \[rad/s\]; empty where the course has none.
+    /// Rate of twist at the bit \[rad/s\]; empty if the course has none.
     pub fn twist_rate(&self) -> &[f64] {
         &self.twist_rate
     }
 
-    /// The three consecutive windows up to sample `end`, each half a window after the one before, whose statistics agree; absent where they
-    /// do not. The shortest windows that agree are taken, and none that holds fewer than two beats of the closest pair of strong lines.
+    /// The three consecutive windows up to sample `end`, each half a window after the one before, whose statistics agree; absent if they
+    /// do not. The shortest windows that agree are returned, and none with fewer than two beats of the closest pair of strong lines.
     pub fn agreement(&self, end: usize, allowed: &Allowed) -> Option<Agreement> {
         let two_beats = BEATS * self.slowest_beat(end);
         let long_enough = LENGTHS.iter().position(|length| *length >= two_beats).unwrap_or(LENGTHS.len() - 1);
@@ -196,7 +196,7 @@ impl Course {
         })
     }
 
-    /// Batch means over the second half of what is before sample `end`; absent where batches would be shorter than ten seconds.
+    /// Batch means over the second half of the course before sample `end`; absent if batches would be shorter than ten seconds.
     pub fn batches(&self, end: usize, allowed: &Allowed) -> Option<Batches> {
         let length = end / 2 / BATCHES;
         if length < self.count(SHORTEST_BATCH) {
@@ -218,7 +218,7 @@ impl Course {
         })
     }
 
-    /// The largest relative difference of orbit sizes and radius deviations between the halves of a window; absent where a half has fewer than
+    /// Largest relative difference of orbit sizes and radius deviations between the halves of a window; absent if a half has fewer than
     /// two samples or no node is recorded.
     pub fn halves_differ(&self, window: &Range<usize>, allowed: &Allowed) -> Option<f64> {
         let [first, second] = halves(window)?;
@@ -229,9 +229,9 @@ impl Course {
     }
 
     /// Growth \[1/s\] of the bit's rotation at a frequency \[Hz\], from one window to another of the same length that begins `lag` seconds
-    /// later; absent where the course has no bit, the windows are shorter than three periods, or nothing moves at that frequency.
+    /// later; absent if the course has no bit, the windows are shorter than three periods, or nothing moves at that frequency.
     pub fn growth(&self, [from, to]: [Range<usize>; 2], frequency_hz: f64) -> Option<f64> {
-        /// Periods of a window in which Hann's window parts the line from the mean.
+        /// Periods of a window in which Hann's window separates the line from the mean.
         const PERIODS: f64 = 3.0;
         /// Largest relative difference between the frequencies of a large motion and of a small one.
         const SHIFT: f64 = 0.02;
@@ -249,7 +249,7 @@ impl Course {
         Some((amplitude(to)? / amplitude(from)?).ln() / lag)
     }
 
-    /// The base frequencies of a window \[Hz\], ascending, two at most: its strongest line, and the strongest that is none of its
+    /// The base frequencies of a window \[Hz\], ascending, two at most: its strongest line, and the strongest that is not among its
     /// multiples. Lines of forward and backward whirl count alike.
     pub fn base_frequencies(&self, window: &Range<usize>) -> Vec<f64> {
         let spectra = self.spectra(window);
@@ -257,7 +257,7 @@ impl Course {
             return Vec::new();
         };
         let near = |a: f64, b: f64| (a - b).abs() < APART * resolution;
-        // Of all nodes and the bit together, each relative to its own motion.
+        // Lines of all nodes and the bit together, each relative to its own motion.
         let mut lines: Vec<(f64, f64)> = Vec::new();
         for spectrum in &spectra {
             let found = lines_of(spectrum);
@@ -293,7 +293,7 @@ impl Course {
         base
     }
 
-    /// Time of a beat of the closest pair of strong lines before sample `end` \[s\]; 0 where there is none.
+    /// Time of a beat of the closest pair of strong lines before sample `end` \[s\]; 0 without such a pair.
     fn slowest_beat(&self, end: usize) -> f64 {
         let window = end.saturating_sub(self.count(LINES_OF))..end;
         let beat_of = |spectrum: &FullSpectrum| {
@@ -423,7 +423,7 @@ impl Interval {
         let [first_mean, last_mean] = [mean(first), mean(last)];
         let pooled = (about(first, first_mean) + about(last, last_mean)) / (count - 2.0);
         let is_trend = (first_mean - last_mean).abs() > STEADY * (pooled * 4.0 / count).sqrt();
-        // Motion below the smallest that counts has no trend to speak of, nor has one that rounding alone makes.
+        // Motion below the smallest that counts has no meaningful trend, and neither has one that rounding alone causes.
         let counts = statistic.value > statistic.smallest
             && (first_mean - last_mean).abs() > statistic.allowed * statistic.value.powi(2);
         Self {
@@ -434,7 +434,7 @@ impl Interval {
     }
 }
 
-/// The two halves of a window; absent where they have fewer than two samples.
+/// The two halves of a window; absent if they have fewer than two samples.
 pub fn halves(window: &Range<usize>) -> Option<[Range<usize>; 2]> {
     let half = window.len() / 2;
     (half >= 2).then(|| [window.start..window.start + half, window.end - half..window.end])
@@ -461,7 +461,7 @@ mod tests {
     const ALLOWED: Allowed =
         Allowed { orbit_size: 0.01, radius_deviation: 0.025, smallest_orbit: 1e-5, smallest_rotation: 1e-2 };
 
-    /// A course of one node and the bit over so many seconds.
+    /// A course of one node and the bit over a number of seconds.
     fn course(seconds: f64, orbit: impl Fn(f64) -> [f64; 2], twist_rate: impl Fn(f64) -> f64) -> Course {
         let samples = (seconds * RATE) as usize;
         let mut course = Course::new(RATE, 0, 1, true, samples);

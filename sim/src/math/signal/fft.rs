@@ -3,8 +3,8 @@
 use nalgebra::Complex;
 use rustfft::FftPlanner;
 
-/// Transforms N samples z in place to Z_k = sum over n of z_n exp(-2 pi i k n / N), k = 0 to N - 1. N is any number; no
-/// samples stay none.
+/// Transforms N samples z in place to Z_k = sum over n of z_n exp(-2 pi i k n / N), k = 0 to N - 1. N is any number, zero
+/// included.
 pub(super) fn forward(samples: &mut [Complex<f64>]) {
     if !samples.is_empty() {
         FftPlanner::new().plan_fft_forward(samples.len()).process(samples);

@@ -1,7 +1,7 @@
-//! Orbits and full spectra of recorded lateral motion, and whether it has settled.
+//! Orbits and full spectra of recorded lateral motion, and the settling of that motion.
 //!
 //! A node's motion is the complex signal z = u + i v. Turning in the sense of the string's rotation (from u to
-//! v) is forward whirl and stands at positive frequencies, turning against it is backward whirl.
+//! v) is forward whirl, at positive frequencies; turning against it is backward whirl.
 
 mod course;
 mod fft;

@@ -27,7 +27,7 @@ pub struct OrbitStatistics {
     pub peak_to_peak_v: f64,
 }
 
-/// Statistics of the samples (u, v), all weighted alike; nothing where there are none.
+/// Statistics of the samples (u, v), all weighted alike; `None` without samples.
 ///
 /// # Panics
 /// u and v differ in length.
@@ -35,7 +35,7 @@ pub fn orbit_statistics(u: &[f64], v: &[f64]) -> Option<OrbitStatistics> {
     weighted_orbit_statistics(u, v, Window::Rectangular)
 }
 
-/// Statistics of the samples (u, v) with the weights of a window; extremes are those of all samples. Nothing where there are none.
+/// Statistics of the samples (u, v) with the weights of a window; extremes are those of all samples. `None` without samples.
 ///
 /// # Panics
 /// u and v differ in length.

@@ -26,7 +26,7 @@ pub struct FullSpectrum {
 pub struct Peak {
     /// Frequency \[Hz\], interpolated between the bins.
     pub frequency_hz: f64,
-    /// Amplitude \[m\], interpolated as the frequency is: that of the motion, however far its frequency lies from a bin.
+    /// Amplitude \[m\] of the motion, interpolated like the frequency, whatever the distance of the frequency from a bin.
     pub amplitude: f64,
     /// Sense of the motion.
     pub whirl: Whirl,
@@ -47,15 +47,15 @@ pub enum Whirl {
 /// Criteria of a search for lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakSearch {
-    /// At most so many, the highest first.
+    /// Largest number of lines, the highest first.
     pub count: usize,
-    /// Lines closer than this to a higher one are skipped \[Hz\].
+    /// Least separation \[Hz\]: lines closer than this to a higher one are skipped.
     pub min_separation_hz: f64,
     /// True if the mean position (0 Hz) is skipped.
     pub exclude_mean: bool,
 }
 
-/// The full spectrum of (u, v) \[m\] sampled at `rate_hz`; any number of samples will do. The highest of an even
+/// The full spectrum of (u, v) \[m\] sampled at `rate_hz`, for any number of samples. The highest of an even
 /// number of frequencies counts as negative. Without samples the spectrum is empty.
 ///
 /// ```
@@ -112,8 +112,8 @@ impl FullSpectrum {
     }
 
     /// The highest lines, the highest first. A line is a bin above both its neighbours, so the first and last
-    /// bins are none. Frequency and amplitude are interpolated between the bins: exact for a line that is alone in a long window, and
-    /// as near as the leakage of other lines lets them be for one that is not.
+    /// bins are none. Frequency and amplitude are interpolated between the bins: exactly for a single line in a long window, otherwise
+    /// up to the leakage of other lines.
     pub fn peaks(&self, search: &PeakSearch) -> Vec<Peak> {
         let mut candidates: Vec<Peak> =
             (1..self.amplitude.len().saturating_sub(1)).filter_map(|bin| self.peak_at(bin)).collect();

@@ -113,8 +113,8 @@ fn a_lone_line_between_bins_is_found() {
     }
 }
 
-/// Wherever it lies between two bins, a lone line has its own amplitude. The closed forms are those of many samples: N sin(pi d / N)
-/// in place of pi d, and what comes of it in the offset, are both within (pi / N)^2 of them.
+/// A lone line has its own amplitude at any place between two bins. The closed forms are those of many samples: N sin(pi d / N)
+/// in place of pi d, and its effect on the offset, are both within (pi / N)^2 of them.
 #[test]
 fn a_lone_line_has_its_amplitude_wherever_it_lies() {
     let amplitude = 1e-2;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Window {
-    /// All samples alike: exact for lines that fit the window, leaky for all others.
+    /// Equal weights: exact for lines that fit the window, leaky for all others.
     #[default]
     Rectangular,
     /// The periodic Hann window (1 - cos(2 pi n / N)) / 2: little leakage, lines twice as wide.
@@ -41,7 +41,7 @@ impl Window {
         offset.clamp(0.0, 0.5)
     }
 
-    /// Part of a line's amplitude that its highest bin shows, at an `offset` of 0 to 1/2 bins: the transform of the window's weights
+    /// Ratio of the highest bin to a line's amplitude, at an `offset` of 0 to 1/2 bins: the transform of the window's weights
     /// over its value on the bin, for a lone line in a long window (Harris 1978). Down to 0.64 without window, 0.85 with Hann's.
     pub(super) fn line_height(self, offset: f64) -> f64 {
         let run = PI * offset;

@@ -22,15 +22,15 @@ pub struct StringElement {
     pub momentum: Option<FlowMomentum>,
     /// Elastic stiffness.
     pub elastic: ElementMatrix,
-    /// Stiffening by a tension of 1 N; absent where the effect is off.
+    /// Stiffening by a tension of 1 N; absent if the effect is off.
     pub tension_unit: Option<ElementMatrix>,
-    /// Stiffening by a torque of 1 N m; absent where the effect is off.
+    /// Stiffening by a torque of 1 N m; absent if the effect is off.
     pub torque_unit: Option<ElementMatrix>,
     /// Loads, on the left-hand side, of a tension of 1 N on the slopes that the hole's axis has against the chord; zero if the effect is off.
     pub tension_load: ElementVector,
     /// The same of a torque of 1 N m.
     pub torque_load: ElementVector,
-    /// Stiffness of the flows, end term included; absent where the effect is off.
+    /// Stiffness of the flows, end term included; absent if the effect is off.
     pub flow: Option<ElementMatrix>,
     /// T = `tension_row` . q \[N\].
     pub tension_row: ElementVector,

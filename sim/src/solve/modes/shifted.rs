@@ -200,7 +200,7 @@ mod tests {
             ShiftedPencil::new(shift, matrices.each_ref(), &[[false; DOFS]; NODES]).expect("regular");
         let found = factor.log_determinant();
         assert!((found.re / expected.norm().ln() - 1.0).abs() < 1e-12, "{found} against {expected}");
-        // The direction tells an odd number of exchanges from an even one.
+        // The direction distinguishes an odd number of exchanges from an even one.
         let apart = Complex::from_polar(1.0, found.im) - expected / expected.norm();
         assert!(apart.norm() < 1e-9, "{found} against {expected}");
     }

@@ -17,7 +17,7 @@ pub enum StaticsError {
         iterations: usize,
         /// Largest unbalanced force \[N\].
         residual: f64,
-        /// Node where it stands, from 1.
+        /// Node with that force, from 1.
         node: usize,
         /// Instability that the string has in every position; absent if none was found.
         overload: Option<Overload>,
@@ -48,7 +48,7 @@ pub enum StaticsError {
 }
 
 impl StaticsError {
-    /// The node where the failure shows most, from 1.
+    /// Node with the largest sign of the failure, from 1.
     pub fn node(&self) -> usize {
         match self {
             Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,

@@ -1,4 +1,4 @@
-//! Pseudo-transient relaxation: the string creeps from where it is to rest, through a viscous medium.
+//! Pseudo-transient relaxation: the string creeps from its position to rest, through a viscous medium.
 //!
 //! `c x' = R(x)` for the lateral displacements, by implicit Euler steps that are each solved in full (Kelley and Keyes 1998). However stiff the wall,
 //! a step that is short enough has a solution next to its start, and if the string is stable, it creeps to an equilibrium. Steps become

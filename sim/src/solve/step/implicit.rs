@@ -7,7 +7,6 @@
 //! of A0^-1 are the compliance of a node to its own contact force, and the force is the one that agrees with it. A sticking node,
 //! whose friction is a damper of F_n / v_ref and stiffer than any step resolves, is therefore held in the first iteration. The iterations
 //! have to converge only in the forces of nodes on each other.
-//! have to converge to is what nodes do to each other.
 
 use super::forces::{ActingForces, Forces, StageAt, StageCompliance};
 use crate::force::wall::SweepChange;

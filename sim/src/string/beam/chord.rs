@@ -6,7 +6,7 @@ use super::matrix::{ElementMatrix, ElementVector};
 use crate::math::dof::{DOFS, THETA_X, THETA_Y};
 use crate::string::well::NodeFrame;
 
-/// The straight line between two nodes, with its own frame and the way back to the nodes' frames.
+/// The straight line between two nodes, with its own frame and the transformation to the nodes' frames.
 #[derive(Debug, Clone)]
 pub struct Chord {
     /// Chord length \[m\].
@@ -39,12 +39,12 @@ impl Chord {
         Self { length, axes, carry }
     }
 
-    /// A matrix of the chord frame, seen by the nodes: B^T m B.
+    /// A matrix of the chord frame in nodal values: B^T m B.
     pub fn matrix_to_nodes(&self, m: &ElementMatrix) -> ElementMatrix {
         self.carry.tr_mul(&(m * self.carry))
     }
 
-    /// Loads in the chord frame, seen by the nodes: B^T f. Also turns a row over chord values into a row over
+    /// Loads in the chord frame in nodal values: B^T f. Also transforms a row over chord values to a row over
     /// nodal values.
     pub fn vector_to_nodes(&self, f: &ElementVector) -> ElementVector {
         self.carry.tr_mul(f)
@@ -55,7 +55,7 @@ impl Chord {
         self.axes.map(|axis| axis.dot(v))
     }
 
-    /// End rotations that carry the chord onto the two nodal tangents, lateral components only: what bends a
+    /// End rotations that carry the chord onto the two nodal tangents, lateral components only: they bend a
     /// straight pipe into the curved hole.
     pub fn tangent_rotations(&self, upper: &NodeFrame, lower: &NodeFrame) -> ElementVector {
         let mut theta = ElementVector::zeros();

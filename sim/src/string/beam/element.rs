@@ -18,8 +18,8 @@ const PLANE_U: [(usize, f64); 4] = [(U, 1.0), (THETA_Y, 1.0), (DOFS + U, 1.0), (
 /// Degrees of freedom of the plane (v, theta_x): a positive slope of v is a negative theta_x.
 const PLANE_V: [(usize, f64); 4] = [(V, 1.0), (THETA_X, -1.0), (DOFS + V, 1.0), (DOFS + THETA_X, -1.0)];
 
-/// One straight element: a section and a length. Matrices are in the chord frame and, where a factor (tension,
-/// torque, mass per length) is named, for that factor equal to one.
+/// One straight element: a section and a length. Matrices are in the chord frame. If a factor (tension,
+/// torque, mass per length) is named, they are for that factor equal to one.
 #[derive(Debug, Clone, Copy)]
 pub struct BeamElement {
     section: BeamSection,
@@ -145,12 +145,12 @@ impl BeamElement {
         f
     }
 
-    /// Row that gives the axial force E S w' from the 12 nodal values \[N/m\].
+    /// Row that maps the 12 nodal values to the axial force E S w' \[N/m\].
     pub fn tension_row(&self) -> ElementVector {
         difference_row(W, self.section.axial_stiffness() / self.length)
     }
 
-    /// Row that gives the torque G I_p theta_z' from the 12 nodal values \[N m/rad\].
+    /// Row that maps the 12 nodal values to the torque G I_p theta_z' \[N m/rad\].
     pub fn torque_row(&self) -> ElementVector {
         difference_row(THETA_Z, self.section.torsional_stiffness() / self.length)
     }

@@ -3,8 +3,8 @@
 /// Values of the shape functions at one place of an element, in one bending plane.
 ///
 /// The four functions belong to (deflection, rotation) of the upper node and of the lower one, for a plane
-/// in which the slope is positive with the rotation. They solve the homogeneous static equations, so the
-/// stiffness they give is exact (Friedman and Kosmatka 1993).
+/// in which the slope is positive with the rotation. They solve the homogeneous static equations, so that their
+/// stiffness is exact (Friedman and Kosmatka 1993).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Deflection N.

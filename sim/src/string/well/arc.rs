@@ -18,8 +18,8 @@ impl Direction {
     }
 }
 
-/// An arc that starts in the direction of one station and ends in that of the next. Places on it are given
-/// by the distance from its upper end \[m\].
+/// An arc that starts in the direction of one station and ends in that of the next. A place on it is the
+/// distance from its upper end \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     /// Unit tangent at the upper end.
@@ -79,7 +79,7 @@ impl Arc {
     }
 
     /// Carries a vector of the upper end's section to the section at the place, by the rotation about the
-    /// arc's binormal. What `vector` has along the tangent is dropped.
+    /// arc's binormal. The component of `vector` along the tangent is dropped.
     pub(super) fn transport(&self, vector: &Vector3<f64>, distance: f64) -> Vector3<f64> {
         if self.normal == Vector3::zeros() {
             return vector - self.tangent * vector.dot(&self.tangent);
@@ -98,7 +98,7 @@ impl Arc {
     }
 }
 
-/// Below this sine of the angle to the exact reversal, rounding alone would choose the plane of the arc.
+/// Sine of the angle to the exact reversal below which rounding alone would choose the plane of the arc.
 const LEAST_REVERSAL: f64 = 1e-9;
 
 fn sinc(x: f64) -> f64 {

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::path::WellPath;
 
-/// Below this sine of the inclination a section has no low side (docs/model/well.md, Frames of the nodes).
+/// Sine of the inclination below which a section has no low side (docs/model/well.md, Frames of the nodes).
 const VERTICAL: f64 = 1e-6;
 
 /// The frame of one node in global coordinates: `e1` and `e2` span the section, `e1 x e2 = e3`.
@@ -18,13 +18,13 @@ pub struct NodeFrame {
     pub e2: Vector3<f64>,
     /// Unit tangent, downhole (displacement w).
     pub e3: Vector3<f64>,
-    /// Angle from e1 towards e2 at which the low side lies, atan2(g.e2, g.e1) \[rad\]; 0 where the hole is
+    /// Angle from e1 towards e2 of the low side, atan2(g.e2, g.e1) \[rad\]; 0 if the hole is
     /// vertical (inclination within 1e-6 rad of 0 or 180 deg) and has none.
     pub low_side_angle: f64,
 }
 
 impl WellPath {
-    /// The frames at the given measured depths \[m\]. At the first of them e1 is the low side (north where
+    /// The frames at the given measured depths \[m\]. At the first of them e1 is the low side (north if
     /// the hole is vertical); to the others it is carried by parallel transport along the path, arc by
     /// arc, so that frames are free of twist and errors do not add up along the string.
     pub fn frames(&self, depths: &[f64]) -> Vec<NodeFrame> {

@@ -8,7 +8,7 @@ use super::arc::{Arc, Direction};
 /// A survey that cannot be turned into a path. Stations are counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WellError {
-    /// One station or none.
+    /// The survey has one station or none.
     #[error("a survey needs at least 2 stations, got {0}")]
     TooFewStations(usize),
     /// A station holds a number that is not finite.
@@ -35,7 +35,7 @@ pub enum WellError {
 }
 
 /// A well path by minimum curvature. Depths `s` are measured depths \[m\] as in the survey; above the first
-/// and below the last station the end arcs go on.
+/// and below the last station the end arcs continue.
 #[derive(Debug, Clone)]
 pub struct WellPath {
     intervals: Vec<Interval>,
@@ -43,7 +43,7 @@ pub struct WellPath {
     bottom: f64,
 }
 
-/// The arc below one station, with what has been carried along from the first station to its upper end.
+/// The arc below one station, with the quantities carried from the first station to its upper end.
 #[derive(Debug, Clone)]
 pub(super) struct Interval {
     /// Measured depth of the upper end \[m\].
@@ -75,8 +75,8 @@ impl WellPath {
     /// ```
     ///
     /// # Errors
-    /// Fewer than two stations, a number that is not finite, depths that do not increase, or an interval
-    /// with a dogleg of 180 deg, in which the arc's plane is undefined.
+    /// There are fewer than two stations, a number is not finite, depths do not increase, or an interval
+    /// has a dogleg of 180 deg, which leaves the arc's plane undefined.
     pub fn new(well: &Well) -> Result<Self, WellError> {
         let survey = &well.survey;
         if survey.len() < 2 {
@@ -133,8 +133,8 @@ impl WellPath {
         interval.arc.tangent(s - interval.top)
     }
 
-    /// Curvature vector kappa(s) = dt/ds \[1/m\]. It jumps at a station, where that of the interval below is
-    /// given (at the last station that of the interval above).
+    /// Curvature vector kappa(s) = dt/ds \[1/m\]. It jumps at a station; there it is that of the interval below
+    /// (at the last station that of the interval above).
     pub fn curvature(&self, s: f64) -> Vector3<f64> {
         let interval = self.interval(s);
         interval.arc.curvature(s - interval.top)
@@ -226,7 +226,7 @@ mod tests {
             let mut integral = Vector3::zeros();
             for i in 0..panels {
                 let s = top + f64::from(i) * h;
-                // The upper station belongs to this interval and so does every place within it; the last
+                // The upper station belongs to this interval, like every place within it; the last
                 // place is approached from inside.
                 let end = if i + 1 == panels { bottom - 1e-13 } else { s + h };
                 integral +=

@@ -3,7 +3,7 @@
 //! A [scenario](drillsweep_scenario) becomes a [`Model`](solve::model::Model): mesh, and matrices of its active effects. The model has an
 //! [`Equilibrium`](solve::statics::Equilibrium) with a hydraulic profile ([`force::mud`]); from there a
 //! [`Transient`](solve::run::Transient) yields records, from which orbits and full spectra are computed ([`math::signal`]). The crate has five
-//! layers, each above those that it uses: [`math`], [`string`], [`force`], [`solve`], [`validation`].
+//! storeys, each above those that it uses: [`math`], [`string`], [`force`], [`solve`], [`validation`].
 //!
 //! ```
 //! use drillsweep_sim::solve::model::Model;

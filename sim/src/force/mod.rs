@@ -1,7 +1,7 @@
 //! Loads on the string: contact law, mud, terms of elements, and forces that no matrix holds.
 //!
-//! Forces of the [wall] act on every node and along the elements, four at a time. Any other acts on a few nodes and is one file: it implements
-//! [`NodalForce`](nodal::NodalForce) and has one line in [`list::nodal_forces`]; if it does work on the motion it has one in [`list::ENTRIES`] and
+//! Forces of the wall (`wall`) act on every node and along the elements, four at a time. Any other acts on a few nodes and is one file: it implements
+//! `NodalForce` and has one line in `list::nodal_forces`; if it does work on the motion it has one in `list::ENTRIES` and
 //! its account one in the ledger ([`effect::ACCOUNTS`]), and an effect of its own has one in the register of [effects](effect).
 
 pub mod contact;

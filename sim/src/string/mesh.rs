@@ -69,7 +69,7 @@ impl StringMesh {
     /// of section, tool joint, gauge and unbalance mass is a node; each part between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
-    /// With the mesh `auto`, depths whose motion is recorded are nodes, too. A place within [`SNAP_FRACTION`] of the target length of a boundary is
+    /// With the mesh `auto`, depths whose motion is recorded are nodes, too. A place within [`SNAP_FRACTION`](super::SNAP_FRACTION) of the target length of a boundary is
     /// moved to it. Two gauges that meet at one node have the smaller clearance.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The run in time: equation (37) from the equilibrium at rest, unbalance on from t = 0.
 //!
-//! Tension, torque and the mud's coefficients are frozen at the equilibrium (docs/model/motion.md). A [`Control`] watches, cancels and suspends
+//! Tension, torque and the mud's coefficients are frozen at the equilibrium (docs/model/motion.md). A [`Control`](crate::control::Control) watches, cancels and suspends
 //! a run; a suspended run continues from its [`Checkpoint`] to the
 //! same bits as one that was never interrupted.
 

@@ -10,7 +10,7 @@ use super::settle::Settling;
 use crate::math::signal::Course;
 use crate::solve::step::{EnergyRow, ErrorEstimate, SweepMonitor};
 
-/// Results of a finished run, with its [`Histories`].
+/// Results of a finished run, with its [`Histories`](super::Histories).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Records<H = Vec<NodeHistory>> {
     /// Recording rate \[Hz\].
@@ -62,7 +62,7 @@ pub struct TransientEffort {
     pub sweeps: SweepMonitor,
 }
 
-/// Outcome of a call to [`Transient::run`].
+/// Outcome of a call to [`Transient::run`](super::Transient::run).
 #[derive(Debug)]
 pub enum Outcome<H = Vec<NodeHistory>> {
     /// The run is complete.

@@ -70,7 +70,7 @@ impl<'m> Transient<'m> {
         Ok(transient)
     }
 
-    /// A run that continues from a checkpoint of the same scenario, displaced by [`DISTURBANCE`] as the start of the first member of an ensemble, for
+    /// A run that continues from a checkpoint of the same scenario, displaced by [`DISTURBANCE`](super::DISTURBANCE) as the start of the first member of an ensemble, for
     /// `time` \[s\] or to its end.
     ///
     /// # Errors

@@ -27,7 +27,7 @@ pub fn step_count(model: &Model, stepping: TimeStepping) -> Option<u64> {
     Some(longest + of_friction)
 }
 
-/// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`] defines it: from the methods'
+/// Frequency \[Hz\] up to which steps of a method resolve a vibration, as [`TransientEffort::resolved_hz`](crate::solve::run::TransientEffort::resolved_hz) defines it: from the methods'
 /// amplification of an undamped oscillation.
 pub fn resolved_hz(integrator: Integrator, step: f64) -> f64 {
     let angle = match integrator {
@@ -47,7 +47,7 @@ pub(crate) fn resolving_step(model: &Model, equilibrium: &Equilibrium) -> f64 {
 
 /// The longest step \[s\] of a stepping if `torsion` grows. A stepping that adapts its steps to the tolerance of the reference or a smaller one
 /// must resolve the highest growing mode; others have no bound. If torsion grows up to
-/// the end of the mesh, no step resolves it all; the method damps the modes beyond [`FINEST_TORSION_STEP`].
+/// the end of the mesh, no step resolves it all; the method damps the modes beyond `FINEST_TORSION_STEP`.
 pub fn torsion_step(stepping: &TimeStepping, torsion: Option<&UndampedTorsion>) -> f64 {
     match torsion.and_then(UndampedTorsion::resolving_step) {
         Some(step) if resolves_torsion(stepping) => step.max(FINEST_TORSION_STEP),

@@ -12,7 +12,7 @@ mod recorded;
 mod records;
 mod settle;
 mod snapshots;
-mod stepping;
+mod step_loop;
 #[cfg(test)]
 mod tests;
 mod transient;
@@ -28,7 +28,7 @@ pub use settle::{
     shortest_run, spectrum_windows_at_most, twin_time,
 };
 pub use snapshots::{SNAPSHOT_BLOCK_BYTES, SnapshotBlock, SnapshotSeries, SnapshotTimes};
-pub use stepping::{BLOCK_BYTES, Block, Keep, LEDGER_RATE_HZ};
+pub use step_loop::{BLOCK_BYTES, Block, Keep, LEDGER_RATE_HZ};
 pub use transient::Transient;
 
 pub use crate::solve::step::{DivergenceReason, EnergyRow, ErrorEstimate, SweepMonitor, TransientError};

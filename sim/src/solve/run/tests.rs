@@ -6,7 +6,7 @@ use std::sync::Arc;
 use drillsweep_scenario::{Accuracy, Integrator, Scenario, TimeStepping, preset};
 use serde_json::{Value, json};
 
-use super::stepping::Run;
+use super::step_loop::Run;
 use super::transient::Solved;
 use super::{Checkpoint, Outcome, Transient};
 use crate::control::Control;

@@ -5,7 +5,7 @@ use super::disturbance::disturbance;
 use super::histories::{Histories, NodeHistory};
 use super::recorded::recorded_nodes;
 use super::records::Outcome;
-use super::stepping::{Block, Keep, Run, Start};
+use super::step_loop::{Block, Keep, Run, Start};
 use crate::control::Control;
 use crate::math::dof::Dofs;
 use crate::solve::model::Model;

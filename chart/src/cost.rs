@@ -195,7 +195,6 @@ mod tests {
             meshes: Vec::new(),
             effects: Vec::new(),
             recommendations: Vec::new(),
-            total: None,
             warnings: Vec::new(),
         }
     }

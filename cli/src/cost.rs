@@ -46,8 +46,7 @@ pub(crate) struct CostArguments {
     /// Meshes to compare, as factors on the element lengths, such as `2,0.5,0.25`.
     #[arg(long, value_name = "FACTORS", value_delimiter = ',')]
     mesh_factors: Vec<f64>,
-    /// Find the cheapest mesh, method and tolerance for a whole error of orbit size, mesh and time together, such as `5%` or `0.05`.
-    /// Needs stiffness by length (`--set contact.law=per_length`); meshes of the factors 1, 0.5 and 0.25 unless given.
+    /// Recommend the cheapest line for this relative error, too, such as `5%` or `0.05`; for scenarios whose runs end when they have settled.
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     total: Option<f64>,
     /// Switch each effect off in turn instead, at the scenario's own accuracy, and report changes and saved time.
@@ -291,9 +290,11 @@ mod tests {
         for text in ["5", "0", "0%", "100%", "-5%", "nan", "five", "%", ""] {
             assert!(total(text).is_err(), "{text}");
         }
-        let arguments = arguments(&["paper-200m", "--total", "5%"]).unwrap();
-        let scenario = studied(&arguments, "paper-200m").unwrap();
-        assert_eq!(scenario.cost_study.unwrap().meshes(), [1.0, 0.5, 0.25]);
+        let arguments = arguments(&["paper-200m-damped", "--total", "5%"]).unwrap();
+        let scenario = studied(&arguments, "paper-200m-damped").unwrap();
+        assert_eq!(scenario.cost_study.unwrap().total, Some(0.05));
+        let refused = studied(&arguments, "paper-200m").unwrap_err().to_string();
+        assert!(refused.contains("cost_study.total"), "{refused}");
     }
 
     #[test]

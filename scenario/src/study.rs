@@ -35,10 +35,8 @@ pub struct CostStudy {
     /// in inverse proportion, and without `contact.law = "per_length"` the values need not converge.
     #[serde(default)]
     pub mesh_factors: Vec<f64>,
-    /// Wanted relative error of orbit size, mesh and time together, above 0 and below 1, usual 0.01 to 0.1: the cheapest mesh,
-    /// method and tolerance for it are looked for; absent means not. Without `mesh_factors` the meshes are then those of the
-    /// factors 1, 0.5 and 0.25: nodes of the first are mostly nodes of the others, so that values are compared at the same depths. Not for runs that
-    /// settle: each of their lines has its whole error, and the recommendations name the cheapest.
+    /// A further relative error, above 0 and below 1, usual 0.01 to 0.1, for which the recommendations name the cheapest line; absent means those of
+    /// 0.08, 0.02 and 0.003 alone. For runs that settle only, each of whose lines has its whole error, by steps, mesh and sampling.
     #[serde(default)]
     pub total: Option<f64>,
     /// An effect ablation in place of methods and meshes: the scenario at its own accuracy, with each effect that takes part
@@ -62,10 +60,6 @@ impl Scenario {
 /// Fixed steps \[s\] that are compared if a study names none.
 pub const USUAL_STEPS: [(Integrator, [f64; 3]); 2] =
     [(Integrator::GeneralizedAlpha, [5e-4, 2.5e-4, 1.25e-4]), (Integrator::Esdirk4, [1e-3, 5e-4, 2.5e-4])];
-
-/// Factors on the mesh's target element lengths that are compared for a whole error if a study names none: two meshes would tell
-/// no order of convergence.
-const USUAL_MESH_FACTORS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// The reference of a study: two independent methods. Their common result is the reference; a statistic in which they differ
 /// by more than is allowed has none.
@@ -138,10 +132,7 @@ impl CostStudy {
 
     /// Factors of the meshes that are compared, the scenario's own among them, from coarse to fine; empty if none are.
     pub fn meshes(&self) -> Vec<f64> {
-        let mut factors = match self.total {
-            Some(_) if self.mesh_factors.is_empty() => USUAL_MESH_FACTORS.to_vec(),
-            _ => self.mesh_factors.clone(),
-        };
+        let mut factors = self.mesh_factors.clone();
         if !factors.is_empty() {
             factors.push(1.0);
         }

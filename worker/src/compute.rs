@@ -117,16 +117,10 @@ impl Computed {
         if let Some(study) = &self.study {
             row.put(&HISTORIES_PART_AT, study.histories_part_at);
             for Recommendation { quantity, accuracy, cpu_time, .. } in &study.recommendations {
-                // 0.003 is 0.3 %; a dot in a column's name would read as a path.
-                let percent = (100.0 * accuracy).to_string().replace('.', "_");
+                // 0.07 is 7 %, not 7.000000000000001 %; a dot in a column's name would read as a path.
+                let percent = ((1e8 * accuracy).round() / 1e6).to_string().replace('.', "_");
                 let accuracy = format!("{}_{percent}_percent", quantity.name());
                 row.put(COST_CPU_TIME.of(&accuracy), cpu_time);
-            }
-            if let Some(total) = &study.total {
-                // 0.07 is 7 %, not 7.000000000000001 %.
-                let percent = ((1e8 * total.wanted).round() / 1e6).to_string().replace('.', "_");
-                let cpu_time = total.choice.as_ref().map(|choice| choice.cpu_time);
-                row.put(COST_CPU_TIME.of(&format!("total_{percent}_percent")), cpu_time);
             }
         }
         row.0

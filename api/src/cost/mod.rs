@@ -19,8 +19,8 @@ mod tests {
     use drillsweep_scenario::{Integrator, TimeWindow};
     use drillsweep_sim::solve::run::MotionRegime;
     use drillsweep_study::cost::{
-        Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NodeAgreement,
-        NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, TotalChoice, TotalCost,
+        Agreement, CostErrors, CostReport, CostRow, LineErrors, NodeAgreement, NodeStatistic, Quantity,
+        Recommendation, SpuriousLine, StatisticError,
     };
 
     use super::*;
@@ -165,34 +165,7 @@ mod tests {
                 cpu_time: Some(48.0),
                 text: "2 % of orbit size: esdirk4 with a step of 0.5 ms".to_owned(),
             }],
-            total: None,
             warnings: vec!["a finer mesh meets a stiffer wall".to_owned()],
-        }
-    }
-
-    /// A choice for a whole error from the report's meshes and methods.
-    pub(super) fn total() -> TotalCost {
-        let part =
-            |mesh_factor, elements, error, cpu_ratio| MeshPart { mesh_factor, elements, error, cpu_ratio };
-        TotalCost {
-            wanted: 0.01,
-            limits: vec![MeshLimit { measured_depth: Some(57.8), order: Some(2.0), orbit_size: 7.1e-4 }],
-            meshes: vec![part(2.0, 158, 0.08, 0.5), part(0.5, 585, 0.005, 2.0)],
-            choice: Some(TotalChoice {
-                mesh_factor: 0.5,
-                elements: 585,
-                name: "esdirk4".to_owned(),
-                integrator: Integrator::Esdirk4,
-                step: 5e-4,
-                tolerance: None,
-                contact_sweeps: 2,
-                mesh_error: 0.005,
-                time_error: 0.004,
-                whole_error: 0.009,
-                cpu_time: 96.0,
-            }),
-            stopped_by: None,
-            text: "1 % of orbit size in all: mesh x 0.5".to_owned(),
         }
     }
 

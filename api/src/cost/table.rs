@@ -1,26 +1,18 @@
 //! A cost study as a table.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_study::cost::{
-    CostErrors, CostReport, CostRow, LineErrors, MeshPart, Quantity, StatisticError, TotalChoice,
-};
+use drillsweep_study::cost::{CostErrors, CostReport, CostRow, LineErrors, Quantity, StatisticError};
 use drillsweep_table::{Column, Table};
 
 /// One row a line of the study: its `role` (`reference`, `method`, `start`, `mesh` or `effect`), its settings, its cost, its errors against
-/// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none. If a whole
-/// error was requested, `mesh_error` is the error of a mesh, and a last row of the role `total` is the mesh and method chosen, with the parts of
-/// its error and the time expected for the scenario's own duration.
+/// the reference (of statistics bias, half the width of its interval, and spread), and the `failure` of one that has none.
 pub fn table(report: &CostReport) -> Table {
-    let total = report.total.as_ref();
-    let choice = total.and_then(|total| total.choice.as_ref());
-    let chosen: Vec<CostRow> = choice.and_then(|choice| chosen_row(report, choice)).into_iter().collect();
     let of_role = |role, rows| std::iter::repeat(role).zip(rows);
     let runs: Vec<(&str, &CostRow)> = of_role("reference", report.references.as_slice())
         .chain(of_role("method", &report.methods))
         .chain(of_role("start", &report.starts))
         .chain(of_role("mesh", &report.meshes))
         .chain(of_role("effect", &report.effects))
-        .chain(of_role("total", &chosen))
         .collect();
     let texts =
         |text: fn(&CostRow) -> Option<String>| Column::Text(runs.iter().map(|(_, row)| text(row)).collect());
@@ -39,14 +31,6 @@ pub fn table(report: &CostReport) -> Table {
             i64::try_from(count(lines)).ok()
         };
         Column::Integer(runs.iter().map(|(_, row)| of_run(row)).collect())
-    };
-    let parts = |mesh: fn(&MeshPart) -> Option<f64>, part: fn(&TotalChoice) -> f64| {
-        let of_run = |role: &str, row: &CostRow| match role {
-            "total" => choice.map(part),
-            "mesh" => total?.meshes.iter().find(|found| found.mesh_factor == row.mesh_factor).and_then(mesh),
-            _ => None,
-        };
-        Column::Number(runs.iter().map(|(role, row)| of_run(role, row).unwrap_or(f64::NAN)).collect())
     };
     let mut table = Table::default()
         .with(&ROLE, Column::Text(runs.iter().map(|(role, _)| Some((*role).to_owned())).collect()))
@@ -86,31 +70,7 @@ pub fn table(report: &CostReport) -> Table {
         .with(&FRICTION_COEFFICIENT_ERROR, errors(|errors| errors.friction_coefficient))
         .with(&ENERGY_ERROR, errors(|errors| errors.energy))
         .with(&ESTIMATED_ERROR, errors(|errors| Some(errors.estimate)))
-        .with(&MESH_ERROR, parts(|mesh| Some(mesh.error), |choice| choice.mesh_error))
-        .with(&TIME_ERROR, parts(|_| None, |choice| choice.time_error))
-        .with(&WHOLE_ERROR, parts(|_| None, |choice| choice.whole_error))
         .with(&FAILURE, texts(|row| row.failure.clone()))
-}
-
-/// The line of the chosen method on the chosen mesh, with the time expected of it.
-fn chosen_row(report: &CostReport, choice: &TotalChoice) -> Option<CostRow> {
-    let is_it = |row: &&CostRow| {
-        row.name == choice.name
-            && row.step == choice.step
-            && row.tolerance == choice.tolerance
-            && row.contact_sweeps == choice.contact_sweeps
-    };
-    let row = report.compared().find(is_it)?;
-    Some(CostRow {
-        mesh_factor: choice.mesh_factor,
-        elements: choice.elements,
-        simulated_time: report.scenario_duration,
-        cpu_time: choice.cpu_time,
-        cpu_per_simulated_second: choice.cpu_time / report.scenario_duration,
-        speed_over_rk4: None,
-        errors: None,
-        ..row.clone()
-    })
 }
 
 #[cfg(test)]
@@ -118,7 +78,7 @@ mod tests {
     use drillsweep_table::csv::write;
 
     use super::*;
-    use crate::cost::tests::{report, total};
+    use crate::cost::tests::report;
 
     #[test]
     fn every_run_has_a_row_and_a_failed_one_says_why() {
@@ -134,32 +94,17 @@ mod tests {
              contact_force_bias,contact_force_half_width,contact_force_spread,\
              torsional_speed_bias,torsional_speed_half_width,torsional_speed_spread,\
              line_frequency_error_hz,line_amplitude_error,missing_lines,spurious_lines,trajectory_error,\
-             static_position_error,friction_coefficient_error,energy_error,estimated_error,mesh_error,\
-             time_error,whole_error,failure"
+             static_position_error,friction_coefficient_error,energy_error,estimated_error,failure"
         );
         let roles: Vec<&str> = lines[1..].iter().filter_map(|line| line.split(',').next()).collect();
         assert_eq!(roles, ["reference", "reference", "method", "method", "method", "mesh", "mesh"]);
         assert_eq!(
             lines[3],
             "method,draft,,esdirk4,0.001,,2,1.0,296,2000,1,2.0,fixed,0.8,0.4,10.5,0.4,,,,,,0.04000000000000001,,,,,,,,,0.0,0.4,0,1,\
-             1.2000000000000002,0.0,0.0,,2.0,,,,"
+             1.2000000000000002,0.0,0.0,,2.0,"
         );
-        assert!(lines[5].ends_with(",,,,,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[5]);
+        assert!(lines[5].ends_with(",,,,,,,,\"diverged at 0.1 s, at once\""), "{}", lines[5]);
         assert!(lines[6].starts_with("mesh,esdirk4,,esdirk4,0.001,,2,2.0,158,"), "{}", lines[6]);
-    }
-
-    #[test]
-    fn the_choice_for_a_whole_error_is_a_row_of_its_own() {
-        let report = CostReport { total: Some(total()), ..report() };
-        let csv = write(&table(&report)).unwrap();
-        let lines: Vec<&str> = csv.lines().collect();
-        assert!(lines[6].ends_with(",0.08,,,") && lines[7].ends_with(",0.005,,,"), "{csv}");
-        // The steps are those of the run; 96 s are expected for the scenario's 60.
-        assert!(
-            lines[8].starts_with("total,esdirk4,,esdirk4,0.0005,,2,0.5,585,4000,1,60.0,fixed,96.0,1.6,,"),
-            "{csv}"
-        );
-        assert!(lines[8].ends_with(",0.005,0.004,0.009,"), "{csv}");
     }
 
     #[test]
@@ -172,6 +117,5 @@ mod tests {
         assert_eq!(units["orbit_size_bias"], "1");
         assert_eq!(units["radius_deviation_half_width"], "1");
         assert_eq!(units["speed_over_rk4"], "1");
-        assert_eq!(units["whole_error"], "1");
     }
 }

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use drillsweep_scenario::Integrator;
 use drillsweep_study::cost::{
-    Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshPart, NodeAgreement, Quantity,
-    StatisticError, TotalCost,
+    Agreement, CostErrors, CostReport, CostRow, LineErrors, NodeAgreement, Quantity, StatisticError,
 };
 
 use drillsweep_sim::solve::run::MotionRegime;
@@ -76,10 +75,6 @@ pub fn text(report: &CostReport) -> String {
         for recommendation in &report.recommendations {
             let _ = writeln!(text, "  {}", recommendation.text);
         }
-    }
-    if let Some(total) = &report.total {
-        text.push_str("\nfor a whole error, mesh and time together\n");
-        text.push_str(&total_text(total));
     }
     if !report.warnings.is_empty() {
         text.push('\n');
@@ -306,35 +301,6 @@ fn run_columns(rows: &[&CostRow]) -> Vec<Cells> {
     ]
 }
 
-/// Error of each mesh and limits that orbit sizes tend to, if known; then the recommendation.
-fn total_text(total: &TotalCost) -> String {
-    let mut text = String::new();
-    if !total.meshes.is_empty() {
-        let cells = |head, cell: &dyn Fn(&MeshPart) -> String| Cells {
-            head,
-            cells: total.meshes.iter().map(|mesh| Some(cell(mesh))).collect(),
-        };
-        let columns = [
-            cells("lengths", &|mesh| format!("x {}", three_digits(mesh.mesh_factor))),
-            cells("elements", &|mesh| mesh.elements.to_string()),
-            cells("orbit size error", &|mesh| format!("{} %", percent(mesh.error))),
-            cells("CPU time", &|mesh| format!("x {}", three_digits(mesh.cpu_ratio))),
-        ];
-        text.push_str(&aligned(&columns, &vec![String::new(); total.meshes.len()]));
-    }
-    for limit in &total.limits {
-        let at =
-            limit.measured_depth.map_or_else(String::new, |depth| format!(" at {} m", three_digits(depth)));
-        let size = four_digits(1e3 * limit.orbit_size);
-        let _ = match limit.order {
-            Some(order) => writeln!(text, "  orbit size{at} tends to {size} mm with order {order:.1}"),
-            None => writeln!(text, "  orbit size{at} shows no order; {size} mm on the finest mesh"),
-        };
-    }
-    let _ = writeln!(text, "  {}", total.text);
-    text
-}
-
 /// The spurious lines of each row, the highest named.
 fn spurious_lines(rows: &[&CostRow]) -> String {
     let mut text = String::new();
@@ -448,7 +414,7 @@ pub(super) fn aligned(columns: &[Cells], notes: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cost::tests::{report, total, with_members};
+    use crate::cost::tests::{report, with_members};
 
     #[test]
     fn a_study_is_a_table_of_methods_and_meshes_with_its_reference() {
@@ -463,12 +429,6 @@ mod tests {
         for row in &mut report.methods {
             with_members(row, 0.012, 0.02);
         }
-        insta::assert_snapshot!(text(&report));
-    }
-
-    #[test]
-    fn a_whole_error_is_shown_with_the_meshes_parts() {
-        let report = CostReport { total: Some(total()), methods: Vec::new(), ..report() };
         insta::assert_snapshot!(text(&report));
     }
 

@@ -45,7 +45,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
         "needs the run in time",
     );
     report.require(
-        !study.effects || (study.methods.is_none() && study.meshes().is_empty()),
+        !study.effects || (study.methods.is_none() && study.mesh_factors.is_empty() && study.total.is_none()),
         "cost_study.effects",
         "true",
         "is a study of its own: give neither methods nor mesh_factors nor total with it",
@@ -56,6 +56,12 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, study: &CostStudy)
             "cost_study.total",
             |total| total > 0.0 && total < 1.0,
             "must be greater than 0 and less than 1",
+        );
+        report.require(
+            scenario.study_settles(),
+            "cost_study.total",
+            total,
+            "needs runs that end when they have settled: set recording.orbit_window to \"settled\" and omit cost_study.duration",
         );
     }
     check_reference(report, scenario, study);
@@ -152,7 +158,9 @@ fn with_stepping(scenario: &Scenario, stepping: TimeStepping) -> Scenario {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping};
+    use drillsweep_scenario::{
+        CostStudy, Integrator, MethodSteps, Scenario, StudyReference, TimeStepping, preset,
+    };
 
     use super::super::report::testing::{problem, warnings};
 
@@ -207,13 +215,22 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_error_is_a_part_of_the_orbit() {
+    fn a_whole_error_is_a_part_of_the_orbit_of_runs_that_settle() {
         let of = |total| CostStudy { total: Some(total), ..CostStudy::default() };
-        assert_eq!(warnings(with(of(0.05))), []);
+        let settling = |study: CostStudy| {
+            move |scenario: &mut Scenario| {
+                *scenario = preset("paper-200m-damped").unwrap();
+                scenario.cost_study = Some(study.clone());
+            }
+        };
+        assert_eq!(warnings(settling(of(0.05))), []);
         for total in [0.0, 1.0, 5.0, -0.05] {
-            problem("cost_study.total", with(of(total)));
+            problem("cost_study.total", settling(of(total)));
         }
-        problem("cost_study.effects", with(CostStudy { effects: true, ..of(0.05) }));
+        problem("cost_study.effects", settling(CostStudy { effects: true, ..of(0.05) }));
+        let refused = problem("cost_study.total", with(of(0.05)));
+        assert!(refused.message.contains("have settled"), "{}", refused.message);
+        problem("cost_study.total", settling(CostStudy { duration: Some(60.0), ..of(0.05) }));
     }
 
     #[test]

@@ -15,7 +15,6 @@ mod plan;
 mod report;
 mod results;
 mod row;
-mod total;
 
 #[cfg(test)]
 mod tests;
@@ -24,7 +23,6 @@ pub use measure::Measure;
 pub use plan::{PlannedRow, Role, plan};
 pub use report::report;
 pub use results::{
-    Agreement, CostErrors, CostReport, CostRow, LineErrors, MeshLimit, MeshPart, NamedLine, NodeAgreement,
-    NodeStatistic, Quantity, Recommendation, SpuriousLine, StatisticError, StoppedBy, StudyError,
-    TotalChoice, TotalCost,
+    Agreement, CostErrors, CostReport, CostRow, LineErrors, NamedLine, NodeAgreement, NodeStatistic,
+    Quantity, Recommendation, SpuriousLine, StatisticError, StudyError,
 };

@@ -363,21 +363,6 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_error_needs_three_meshes() {
-        let meshes = |mesh_factors: &[f64]| -> Vec<f64> {
-            let rows = planned(|s| {
-                let study = s.cost_study.as_mut().unwrap();
-                (study.total, study.mesh_factors) = (Some(0.05), mesh_factors.to_vec());
-            });
-            let factor =
-                |row: &PlannedRow| if let Role::Mesh { factor } = row.role { Some(factor) } else { None };
-            rows.iter().filter_map(factor).collect()
-        };
-        assert_eq!(meshes(&[]), [1.0, 0.5, 0.25]);
-        assert_eq!(meshes(&[0.25, 4.0]), [4.0, 1.0, 0.25]);
-    }
-
-    #[test]
     fn members_and_methods_are_those_asked_for() {
         let adaptive =
             MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };

@@ -116,8 +116,6 @@ pub struct CostReport {
     pub effects: Vec<CostRow>,
     /// Cheapest methods for some accuracies.
     pub recommendations: Vec<Recommendation>,
-    /// The cheapest mesh, method and tolerance for a whole error of orbit size; absent if none was requested.
-    pub total: Option<TotalCost>,
     /// Reasons for doubt.
     pub warnings: Vec<String>,
 }
@@ -404,94 +402,6 @@ pub enum StudyError {
     /// Every method of the reference failed.
     #[error("the reference failed: {0}")]
     Reference(String),
-}
-
-/// The cheapest mesh, method and tolerance for a whole error of orbit size.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-pub struct TotalCost {
-    /// Wanted relative error of orbit size over the orbit window, mesh and time together.
-    pub wanted: f64,
-    /// Limits of the orbit sizes with the mesh, node by node; empty if the mesh's part is not known.
-    pub limits: Vec<MeshLimit>,
-    /// Error of each mesh, from coarse to fine; empty if it is not known.
-    pub meshes: Vec<MeshPart>,
-    /// The cheapest choice that meets the wanted error; absent if none does.
-    pub choice: Option<TotalChoice>,
-    /// Obstacle if no choice meets it.
-    pub stopped_by: Option<StoppedBy>,
-    /// The recommendation in words.
-    pub text: String,
-}
-
-/// Limit of the orbit size of one node as the mesh gets finer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-pub struct MeshLimit {
-    /// Measured depth of the node \[m\].
-    pub measured_depth: Option<f64>,
-    /// Order of the three finest meshes, 0.5 at least and 4 at most; absent if they do not converge monotonically, or are fewer. Then the
-    /// error of a mesh is its distance from the finest, plus the distance of the two finest from each other.
-    pub order: Option<f64>,
-    /// Limit of the orbit size \[m\]; without an order that of the finest mesh.
-    pub orbit_size: f64,
-}
-
-/// Error of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-pub struct MeshPart {
-    /// Factor on the mesh's target element lengths.
-    pub mesh_factor: f64,
-    /// Elements.
-    pub elements: usize,
-    /// Estimated relative error of orbit size, at the worst node. It is known no better than the accuracy `reference`, at which the
-    /// meshes are run.
-    pub error: f64,
-    /// Processor time over that of the scenario's own mesh.
-    pub cpu_ratio: f64,
-}
-
-/// A mesh with a method, and their expected error and cost.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-pub struct TotalChoice {
-    /// Factor on the mesh's target element lengths.
-    pub mesh_factor: f64,
-    /// Elements.
-    pub elements: usize,
-    /// Name of the row; see [`CostRow::name`].
-    pub name: String,
-    /// Method.
-    pub integrator: Integrator,
-    /// Step \[s\]; of an adaptive method the longest.
-    pub step: f64,
-    /// Tolerance of the adaptive step; absent if the step is fixed.
-    pub tolerance: Option<f64>,
-    /// Largest number of contact iterations a solve (implicit methods).
-    pub contact_sweeps: u32,
-    /// The mesh's part of the relative error of orbit size.
-    pub mesh_error: f64,
-    /// The method's part: bias and half its interval's width; for fixed steps, the largest of all finer ones of the method too.
-    pub time_error: f64,
-    /// Both together.
-    pub whole_error: f64,
-    /// Expected processor time for the scenario's own duration \[s\]: the method's, times the mesh's ratio.
-    pub cpu_time: f64,
-}
-
-/// Obstacle to the wanted whole error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum StoppedBy {
-    /// Every mesh has a larger error.
-    Mesh,
-    /// Every method has a larger error.
-    Time,
-    /// Both of these.
-    MeshAndTime,
-    /// Some mesh and some method meet it, but no mesh and method together.
-    Sum,
-    /// The mesh's part is not known.
-    UnknownMesh,
-    /// The methods' part is not known.
-    UnknownTime,
 }
 
 /// The run of RK4 with the longest fixed step.

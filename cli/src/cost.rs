@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use drillsweep_api::cost::{Measure, summary, summary_table, summary_text, table, text};
+use drillsweep_api::cost::{Measure, overview, table, text};
 use drillsweep_chart::{PNG_WIDTH, work_precision};
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::validation::validate;
@@ -56,7 +56,7 @@ pub(crate) struct CostArguments {
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZeroUsize>,
     /// Directory for cost.csv and cost.json, and for methods cost.svg and cost.png; of several scenarios a folder each, with
-    /// summary.csv and summary.json of all next to them.
+    /// a cost.csv of all next to them.
     #[arg(long, value_name = "DIRECTORY")]
     output: Option<PathBuf>,
     /// Measure of the chart: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
@@ -90,24 +90,14 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
     let run = |scenario: &Scenario| {
         with_progress(study_time(scenario), |control| pool.install(|| cost_study(scenario, control)))
     };
-    if let [scenario] = scenarios.as_slice() {
-        let report = run(scenario)?;
-        if let Some(directory) = &arguments.output {
-            write(&report, directory, arguments.measure)?;
-        }
-        match arguments.format {
-            Format::Text => print(text(&report).trim_end()),
-            Format::Csv => print(csv::write(&table(&report))?.trim_end()),
-            Format::Json => print(&serde_json::to_string_pretty(&report)?),
-        }
-        return Ok(());
-    }
+    let is_one = scenarios.len() == 1;
     let folders = folder_names(scenarios.iter().map(|scenario| scenario.name.as_str()));
     let (mut reports, mut failed) = (Vec::new(), Vec::new());
     for (scenario, folder) in scenarios.iter().zip(&folders) {
         // One that fails after hours does not take the others with it.
         let report = match run(scenario) {
             Ok(report) => report,
+            Err(error) if is_one => return Err(error),
             Err(error) => {
                 tracing::error!("{}: {error:#}", scenario.name);
                 failed.push(scenario.name.as_str());
@@ -115,21 +105,29 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
             }
         };
         if let Format::Text = arguments.format {
-            print(&text(&report));
+            let text = text(&report);
+            print(if is_one { text.trim_end() } else { &text });
+        }
+        if let Some(directory) = &arguments.output {
+            write(
+                &report,
+                &if is_one { directory.clone() } else { directory.join(folder) },
+                arguments.measure,
+            )?;
         }
         reports.push(report);
-        if let (Some(directory), Some(report)) = (&arguments.output, reports.last()) {
-            write(report, &directory.join(folder), arguments.measure)?;
+        if let Some(directory) = arguments.output.as_ref().filter(|_| !is_one) {
             // Completed studies stay if a later one is interrupted.
-            write_summary(&reports, directory)?;
+            write_file(&directory.join("cost.csv"), csv::write(&table(&reports))?.as_bytes())?;
         }
     }
-    let rows = summary(&reports);
     match arguments.format {
-        Format::Text => print(summary_text(&rows).trim_end()),
-        Format::Csv => print(csv::write(&summary_table(&rows))?.trim_end()),
+        Format::Text if is_one => {}
+        Format::Text => print(overview(&reports).trim_end()),
+        Format::Csv => print(csv::write(&table(&reports))?.trim_end()),
+        Format::Json if is_one => print(&serde_json::to_string_pretty(&reports[0])?),
         Format::Json => {
-            print(&serde_json::to_string_pretty(&json!({ "reports": reports, "summary": rows }))?);
+            print(&serde_json::to_string_pretty(&json!({ "reports": reports, "table": table(&reports) }))?);
         }
     }
     if failed.is_empty() { Ok(()) } else { bail!("no study of {}", failed.join(", ")) }
@@ -203,22 +201,10 @@ fn folder_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     folders
 }
 
-fn write_summary(reports: &[CostReport], directory: &Path) -> anyhow::Result<()> {
-    let rows = summary(reports);
-    let files = [
-        ("summary.csv", csv::write(&summary_table(&rows))?.into_bytes()),
-        ("summary.json", serde_json::to_vec_pretty(&rows)?),
-    ];
-    for (name, bytes) in files {
-        write_file(&directory.join(name), &bytes)?;
-    }
-    Ok(())
-}
-
 fn write(report: &CostReport, directory: &Path, measure: Option<Measure>) -> anyhow::Result<()> {
     std::fs::create_dir_all(directory).with_context(|| format!("cannot make {}", directory.display()))?;
     let mut files = vec![
-        ("cost.csv", csv::write(&table(report))?.into_bytes()),
+        ("cost.csv", csv::write(&table([report]))?.into_bytes()),
         ("cost.json", serde_json::to_vec_pretty(report)?),
     ];
     if report.compared().next().is_some() {

@@ -327,7 +327,7 @@ quantities! {
     CPU_TIME: "cpu_time", "", TIME, "cpu time";
     /// Processor time that an accuracy takes.
     COST_CPU_TIME: "cost_cpu_time", "", TIME, "cost cpu time";
-    /// Role of the line in the study: reference, method, mesh, effect or total.
+    /// Role of the line in the study: reference, method, start, mesh or effect.
     ROLE: "role", "", -, "role";
     /// Name of the accuracy or method.
     NAME: "name", "", -, "name";
@@ -339,8 +339,6 @@ quantities! {
     INTEGRATOR: "integrator", "", -, "integrator";
     /// Time step; the longest one if steps adapt.
     STEP: "step", "h", TIME, "step";
-    /// Step of the RK4 run that speeds are compared with.
-    RK4_STEP: "rk4_step", "", TIME, "rk4 step";
     /// Number of time steps.
     STEPS: "steps", "", -, "steps";
     /// Parts that a recording interval is cut into.
@@ -357,8 +355,6 @@ quantities! {
     CPU_PER_SIMULATED_SECOND: "cpu_per_simulated_second", "", RATIO, "cpu per simulated second";
     /// Processor time of RK4 with the longest of its fixed steps over this one's.
     SPEED_OVER_RK4: "speed_over_rk4", "", RATIO, "speed over rk4";
-    /// Orbit size of the reference.
-    REFERENCE_ORBIT_SIZE: "reference_orbit_size", "", WIDTH, "reference orbit size";
     /// Bias of orbit size, worst node.
     ORBIT_SIZE_BIAS: "orbit_size_bias", "", RATIO, "orbit size bias";
     /// Half the width of the bias' interval of 95 %.
@@ -409,7 +405,7 @@ quantities! {
     ESTIMATED_ERROR: "estimated_error", "", RATIO, "estimated error";
     /// Estimated relative error of orbit size by the mesh.
     MESH_ERROR: "mesh_error", "", RATIO, "mesh error";
-    /// Relative error of orbit size by mesh and time steps together; of a result by sampling too, as independent parts, and absent if one of them is not known.
+    /// Relative error of orbit size by mesh, time steps and sampling together, as independent parts; absent if one of them is not known.
     WHOLE_ERROR: "whole_error", "", RATIO, "whole error";
     /// Verdict on the accuracy's promise.
     PROMISE: "promise", "", -, "promise";

@@ -260,7 +260,7 @@ pub fn compute_from(
     };
     let mut artifacts = point_tables(&model, &equilibrium, records.as_ref(), scratch)?;
     if let Some(study) = &study {
-        artifacts.push(EncodedArtifact::report("cost", &json!(study), study.rows(), scratch)?);
+        artifacts.push(EncodedArtifact::report("cost", &json!(study), study.runs().count(), scratch)?);
     }
     let computed = Computed {
         artifacts,

@@ -12,11 +12,16 @@ pub fn step_text(step: f64) -> String {
 
 /// A number to three digits, without zeros at the end.
 pub fn three_digits(value: f64) -> String {
-    let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
-    let decimals = usize::try_from(3 - whole_digits).unwrap_or(0).min(12);
-    let text = format!("{value:.decimals$}");
+    let text = digits(value, 3);
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
     }
+}
+
+/// A number to `count` digits.
+pub(super) fn digits(value: f64, count: i32) -> String {
+    let whole_digits = value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32 + 1;
+    let decimals = usize::try_from(count - whole_digits).unwrap_or(0).min(12);
+    format!("{value:.decimals$}")
 }

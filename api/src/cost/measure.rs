@@ -3,6 +3,8 @@
 use std::str::FromStr;
 
 use drillsweep_study::cost::{CostReport, CostRow, Quantity};
+use serde::de::IntoDeserializer;
+use serde::de::value::Error as ValueError;
 use serde::{Deserialize, Serialize};
 
 /// The error that a chart shows.
@@ -37,23 +39,14 @@ impl Measure {
         };
         error.unwrap_or(0.0)
     }
-
-    /// The name on the wire.
-    fn name(self) -> &'static str {
-        match self {
-            Measure::Trajectory => "trajectory",
-            Measure::OrbitSize => "orbit_size",
-            Measure::RadiusDeviation => "radius_deviation",
-        }
-    }
 }
 
 impl FromStr for Measure {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Measure::ALL.into_iter().find(|measure| measure.name() == name);
-        found.ok_or_else(|| "must be orbit_size, radius_deviation or trajectory".to_owned())
+        Measure::deserialize(name.into_deserializer())
+            .map_err(|_: ValueError| "must be orbit_size, radius_deviation or trajectory".to_owned())
     }
 }
 

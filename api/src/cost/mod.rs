@@ -2,17 +2,15 @@
 
 mod digits;
 mod measure;
-mod summary;
 mod table;
 mod text;
 
 pub use digits::{step_text, three_digits};
 pub use measure::Measure;
-pub use summary::{PromiseCheck, SummaryRow, Verdict, WorstBias, summary, summary_table, summary_text};
 pub use table::table;
-pub use text::text;
+pub use text::{overview, text};
 
-pub use drillsweep_study::cost::{CostErrors, CostReport, CostRow, Quantity, Recommendation};
+pub use drillsweep_study::cost::{CostErrors, CostReport, CostRow};
 
 #[cfg(test)]
 mod tests {
@@ -86,6 +84,16 @@ mod tests {
         }
     }
 
+    /// A report whose row `draft` has biases of orbit size and of the radius' deviation.
+    pub(super) fn with_draft(orbit_size: f64, radius_deviation: Option<f64>) -> CostReport {
+        let mut draft =
+            CostRow { name: "draft".to_owned(), ..row(Integrator::Esdirk4, 8e-3, 0.1, orbit_size) };
+        if let Some(errors) = &mut draft.errors {
+            errors.radius_deviation = radius_deviation.map(statistic);
+        }
+        CostReport { methods: vec![draft], ..report() }
+    }
+
     /// Gives a row's statistics an interval and a spread.
     pub(super) fn with_members(row: &mut CostRow, half_width: f64, spread: f64) {
         let Some(errors) = &mut row.errors else { return };
@@ -146,6 +154,12 @@ mod tests {
                 draft,
                 row(Integrator::Esdirk4, 5e-4, 0.8, 4e-3),
                 CostRow {
+                    elements: 0,
+                    steps: 0,
+                    simulated_time: 0.0,
+                    regime: None,
+                    cpu_time: 0.0,
+                    cpu_per_simulated_second: 0.0,
                     errors: None,
                     speed_over_rk4: None,
                     failure: Some("diverged at 0.1 s, at once".to_owned()),

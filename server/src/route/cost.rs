@@ -95,7 +95,7 @@ pub(crate) async fn show(
         let drawing = || work_precision(&report, measure.unwrap_or_else(|| Measure::usual(&report)));
         let body = match format {
             CostFormat::Json | CostFormat::Csv => {
-                csv::write(&table(&report)).map_err(|error| Error::internal(&error))?.into_bytes()
+                csv::write(&table([&report])).map_err(|error| Error::internal(&error))?.into_bytes()
             }
             CostFormat::Svg => drawing().svg().into_bytes(),
             CostFormat::Png => drawing().png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,

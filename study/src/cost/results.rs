@@ -126,13 +126,16 @@ impl CostReport {
         self.agreements.iter().find(|agreement| agreement.quantity == quantity)
     }
 
-    /// Number of rows, those of the reference included.
-    pub fn rows(&self) -> usize {
-        self.references.len()
-            + self.methods.len()
-            + self.starts.len()
-            + self.meshes.len()
-            + self.effects.len()
+    /// All rows with their roles: `reference`, `method`, `start`, `mesh` or `effect`.
+    pub fn runs(&self) -> impl Iterator<Item = (&'static str, &CostRow)> {
+        let lists = [
+            ("reference", &self.references),
+            ("method", &self.methods),
+            ("start", &self.starts),
+            ("mesh", &self.meshes),
+            ("effect", &self.effects),
+        ];
+        lists.into_iter().flat_map(|(role, rows)| rows.iter().map(move |row| (role, row)))
     }
 
     /// The run of RK4 with fixed steps that is the basis of speeds, the one with the longest step; absent if none completed.
@@ -319,7 +322,8 @@ pub struct NodeStatistic {
 }
 
 impl NodeStatistic {
-    pub(super) fn bound(&self) -> f64 {
+    /// Bound of the bias: its size and half its interval's width.
+    pub fn bound(&self) -> f64 {
         self.bias.abs() + self.half_width.unwrap_or(0.0)
     }
 }

@@ -155,49 +155,42 @@ impl<'a> Reference<'a> {
 
 /// Agreement of the two methods of a reference in each quantity.
 pub(super) fn agreements(a: Ensemble<'_>, b: Ensemble<'_>, asked: &StudyReference) -> Vec<Agreement> {
-    let parts = [a.to_vec()];
-    let Some(reference) = Reference::new(&parts) else { return Vec::new() };
+    let parts = [[a.to_vec()], [b.to_vec()]];
+    let [Some(of_a), Some(of_b)] = parts.each_ref().map(|part| Reference::new(part)) else {
+        return Vec::new();
+    };
     let agreement = |&quantity: &Quantity| {
         let bound = if quantity.is_deviation() { asked.deviation_agreement } else { asked.size_agreement };
-        if quantity == Quantity::Lines {
-            let lines = reference.line_errors(b)?;
-            let back = [b.to_vec()];
-            let back = Reference::new(&back)?.line_errors(a)?;
-            let differs = lines.missing > 0 || !lines.spurious.is_empty() || !back.spurious.is_empty();
-            let has_reference = !differs && lines.amplitude <= bound;
-            let nodes = lines.named.iter().map(|line| NodeAgreement {
-                measured_depth: Some(line.measured_depth),
-                values: [line.amplitude, line.amplitude * (1.0 + line.amplitude_error)],
-                difference: line.amplitude_error.abs(),
-                has_reference,
+        let node = |measured_depth, values, difference: f64| NodeAgreement {
+            measured_depth,
+            values,
+            difference: difference.abs(),
+            has_reference: difference.abs() <= bound,
+        };
+        let (mut nodes, half_width, has_same_lines): (Vec<_>, _, _) = if quantity == Quantity::Lines {
+            let (lines, back) = (of_a.line_errors(b)?, of_b.line_errors(a)?);
+            let named = lines.named.iter().map(|line| {
+                let of_b = line.amplitude * (1.0 + line.amplitude_error);
+                node(Some(line.measured_depth), [line.amplitude, of_b], line.amplitude_error)
             });
-            let nodes: Vec<_> = nodes.collect();
-            return Some(Agreement {
-                quantity,
-                difference: lines.amplitude,
-                half_width: None,
-                bound,
-                has_reference,
-                nodes,
-            });
-        }
-        let error = reference.statistic_error(b, quantity, |_| true)?;
-        let nodes = error.nodes.iter().map(|node| NodeAgreement {
-            measured_depth: node.measured_depth,
-            values: [node.reference, node.value],
-            difference: node.bias.abs(),
-            has_reference: node.bias.abs() <= bound,
-        });
-        let nodes: Vec<_> = nodes.collect();
+            let is_same = lines.missing == 0 && lines.spurious.is_empty() && back.spurious.is_empty();
+            (named.collect(), None, Some(is_same))
+        } else {
+            let error = of_a.statistic_error(b, quantity, |_| true)?;
+            let nodes = error.nodes.iter();
+            let nodes =
+                nodes.map(|found| node(found.measured_depth, [found.reference, found.value], found.bias));
+            (nodes.collect(), error.half_width, None)
+        };
         let difference = nodes.iter().fold(0.0_f64, |most, node| most.max(node.difference));
-        Some(Agreement {
-            quantity,
-            difference,
-            half_width: error.half_width,
-            bound,
-            has_reference: nodes.iter().any(|node| node.has_reference),
-            nodes,
-        })
+        let has_reference = match has_same_lines {
+            Some(is_same) => is_same && difference <= bound,
+            None => nodes.iter().any(|node| node.has_reference),
+        };
+        if has_same_lines.is_some() {
+            nodes.iter_mut().for_each(|node| node.has_reference = has_reference);
+        }
+        Some(Agreement { quantity, difference, half_width, bound, has_reference, nodes })
     };
     Quantity::ALL.iter().filter_map(agreement).collect()
 }

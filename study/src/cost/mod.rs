@@ -14,7 +14,6 @@ mod measure;
 mod plan;
 mod report;
 mod results;
-mod row;
 
 #[cfg(test)]
 mod tests;

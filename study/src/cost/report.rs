@@ -4,10 +4,8 @@ use drillsweep_scenario::Scenario;
 
 use super::compare::{Reference, agreements};
 use super::measure::Measure;
-use super::plan::wall_depends_on_mesh;
-use super::plan::{PlannedRow, Role};
-use super::results::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError, rk4};
-use super::row::{one_that_holds, rounded, stepping_words};
+use super::plan::{PlannedRow, Role, wall_depends_on_mesh};
+use super::results::{Agreement, CostReport, CostRow, Quantity, Recommendation, StudyError};
 use crate::ensemble::parting_time;
 use drillsweep_sim::solve::run::MotionRegime;
 
@@ -127,51 +125,16 @@ pub fn report(
         ..ran.row()
     };
     let other = |i: usize| if parts.len() == 2 { &parts[1 - i..2 - i] } else { &parts[..] };
-    let mut reference_rows: Vec<CostRow> = references
-        .iter()
-        .enumerate()
-        .map(|(i, ran)| compared(ran, Reference::new(other(i)), false))
-        .collect();
-    let mut methods: Vec<CostRow> =
-        with_role(|role| *role == Role::Method).map(|ran| compared(ran, Some(reference), false)).collect();
-    let meshes: Vec<&Ran> = with_role(|role| matches!(role, Role::Mesh { .. })).collect();
-    // Sorted from coarse to fine.
-    let finest: Vec<Vec<&Measure>> = meshes
-        .iter()
-        .rev()
-        .map(|ran| ran.members().to_vec())
-        .find(|own| !own.is_empty())
-        .into_iter()
-        .collect();
+    let reference_rows =
+        references.iter().enumerate().map(|(i, ran)| compared(ran, Reference::new(other(i)), false));
+    let rows = |role: fn(&Role) -> bool, against: Option<Reference>, is_exact: bool| -> Vec<CostRow> {
+        with_role(role).map(|ran| compared(ran, against, is_exact)).collect()
+    };
     let settles = scenario.study_settles();
-    let meshes: Vec<CostRow> = meshes
-        .iter()
-        .map(|ran| match settles {
-            true => compared(ran, Some(reference), false),
-            false => compared(ran, Reference::new(&finest), true),
-        })
-        .collect();
-    let starts =
-        with_role(|role| *role == Role::Start).map(|ran| compared(ran, Some(reference), false)).collect();
-    let effects = with_role(|role| matches!(role, Role::Without { .. }))
-        .map(|ran| compared(ran, Some(reference), true))
-        .collect();
-    set_speeds(&mut reference_rows, &mut methods, settles);
-    let mut warnings = Vec::new();
-    if base.duration < scenario.duration {
-        warnings.push(format!(
-            "the runs last {} s, the scenario {} s: later motion is not compared",
-            base.duration, scenario.duration
-        ));
-    }
-    warn_of_references(&reference_rows, &agreements, &mut warnings);
-    let unsettled = reference_rows.iter().chain(&methods);
-    for row in unsettled.filter(|row| row.regime == Some(MotionRegime::NotSettled)) {
-        warnings.push(format!("{} has not settled after {} s", stepping_words(row), row.simulated_time));
-    }
-    if !meshes.is_empty() && wall_depends_on_mesh(base) {
-        warnings.push(WALL_OF_NODES.to_owned());
-    }
+    let is_mesh = |role: &Role| matches!(role, Role::Mesh { .. });
+    // Sorted from coarse to fine.
+    let finest = with_role(is_mesh).rev().map(|ran| ran.members().to_vec()).find(|own| !own.is_empty());
+    let against_mesh = if settles { Some(reference) } else { Reference::new(finest.as_slice()) };
     let mut report = CostReport {
         scenario: scenario.name.clone(),
         duration: base.duration,
@@ -181,19 +144,20 @@ pub fn report(
         spectrum_window: base.spectrum_windows().unwrap_or_default().last().copied(),
         members: study.members,
         histories_part_at,
-        references: reference_rows,
-        agreements,
-        methods,
-        starts,
-        meshes,
-        effects,
+        references: reference_rows.collect(),
+        agreements: agreements.clone(),
+        methods: rows(|role| *role == Role::Method, Some(reference), false),
+        starts: rows(|role| *role == Role::Start, Some(reference), false),
+        meshes: rows(is_mesh, against_mesh, !settles),
+        effects: rows(|role| matches!(role, Role::Without { .. }), Some(reference), true),
         recommendations: Vec::new(),
-        warnings,
+        warnings: Vec::new(),
     };
-    let mut accuracies = WANTED.to_vec();
-    accuracies.extend(study.total);
+    set_speeds(&mut report);
+    report.warnings = warnings(&report, base);
+    let accuracies = || WANTED.into_iter().chain(study.total);
     let wanted =
-        RECOMMENDED.iter().flat_map(|&quantity| accuracies.iter().map(move |&accuracy| (quantity, accuracy)));
+        RECOMMENDED.iter().flat_map(|&quantity| accuracies().map(move |accuracy| (quantity, accuracy)));
     report.recommendations =
         wanted.filter_map(|(quantity, accuracy)| recommendation(&report, quantity, accuracy)).collect();
     Ok(report)
@@ -214,35 +178,39 @@ fn parted_at<'a>(parts: &[Vec<&Measure>], twins: impl Iterator<Item = &'a [&'a M
 }
 
 /// Sets the speed of each row relative to RK4 with its longest fixed step.
-fn set_speeds(references: &mut [CostRow], methods: &mut [CostRow], settles: bool) {
+fn set_speeds(report: &mut CostReport) {
+    let settles = report.settles;
     let cost_of = |row: &CostRow| if settles { row.cpu_time } else { row.cpu_per_simulated_second };
-    let Some(cost) = rk4(references.iter().chain(methods.iter())).map(cost_of) else { return };
-    for row in references.iter_mut().chain(methods) {
+    let Some(cost) = report.rk4().map(cost_of) else { return };
+    for row in report.references.iter_mut().chain(&mut report.methods) {
         let speed = cost / cost_of(row);
         row.speed_over_rk4 = (row.failure.is_none() && speed.is_finite()).then_some(speed);
     }
 }
 
-/// Warns of methods of the reference that failed, do not conserve energy, or do not agree.
-fn warn_of_references(references: &[CostRow], agreements: &[Agreement], warnings: &mut Vec<String>) {
-    for row in references {
+/// Warns of late motion that is not compared, of methods of the reference that failed, do not conserve energy, or do not agree, of runs that
+/// have not settled, and of meshes that need not converge.
+fn warnings(report: &CostReport, base: &Scenario) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if report.duration < report.scenario_duration {
+        warnings.push(format!(
+            "the runs last {} s, the scenario {} s: later motion is not compared",
+            report.duration, report.scenario_duration
+        ));
+    }
+    for row in &report.references {
+        let name = format!("{} ({})", row.name, row.integrator.name());
         if let Some(failure) = &row.failure {
-            warnings.push(format!(
-                "no reference exists: of its two methods {} ({}) failed: {failure}",
-                row.name,
-                row.integrator.name()
-            ));
+            warnings.push(format!("no reference exists: of its two methods {name} failed: {failure}"));
         }
         let residual = row.errors.as_ref().and_then(|errors| errors.energy);
         if let Some(residual) = residual.filter(|&ratio| ratio > UNSOUND_RESIDUAL) {
             warnings.push(format!(
-                "the energy residual of {} ({}) is {residual:.1e} of the contacts' net work: do not trust the reference",
-                row.name,
-                row.integrator.name()
+                "the energy residual of {name} is {residual:.1e} of the contacts' net work: do not trust the reference"
             ));
         }
     }
-    for agreement in agreements {
+    for agreement in &report.agreements {
         let Agreement { quantity, difference, bound, half_width, has_reference, .. } = agreement;
         let depths = agreement.depths_without();
         if *has_reference && depths.is_empty() {
@@ -262,12 +230,41 @@ fn warn_of_references(references: &[CostRow], agreements: &[Agreement], warnings
         let words = quantity.words();
         warnings.push(format!("no reference exists for {words}{at}: the two methods {by}{hint}"));
     }
+    let lines = report.references.iter().chain(&report.methods);
+    for row in lines.filter(|row| row.regime == Some(MotionRegime::NotSettled)) {
+        warnings.push(format!("{} has not settled after {} s", stepping_words(row), row.simulated_time));
+    }
+    if !report.meshes.is_empty() && wall_depends_on_mesh(base) {
+        warnings.push(WALL_OF_NODES.to_owned());
+    }
+    warnings
 }
 
 /// Depths in words: `11.7, 192.5 m`.
 fn depths_words(depths: &[f64]) -> String {
     let depths: Vec<_> = depths.iter().map(|depth| format!("{depth:.1}")).collect();
     format!("{} m", depths.join(", "))
+}
+
+/// A row in words: its name if it has one of its own, its method, step and tolerance.
+fn stepping_words(row: &CostRow) -> String {
+    let method = row.integrator.name();
+    let mesh = if row.mesh_factor == 1.0 {
+        String::new()
+    } else {
+        format!("element lengths x {}, ", rounded(row.mesh_factor))
+    };
+    let name = if row.name == method { mesh } else { format!("{}, {mesh}", row.name) };
+    let step = format!("{} ms", rounded(1e3 * row.step));
+    match row.tolerance {
+        Some(tolerance) => format!("{name}{method} with a tolerance of {tolerance:e} and steps up to {step}"),
+        None => format!("{name}{method} with a step of {step}"),
+    }
+}
+
+/// A number without the noise of its last digits.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
 }
 
 /// The cheapest row whose bias, with half its interval's width, is at most `accuracy`. All finer fixed steps of its method must meet
@@ -278,7 +275,14 @@ fn recommendation(report: &CostReport, quantity: Quantity, accuracy: f64) -> Opt
         let error = row.errors.as_ref().and_then(|errors| errors.statistic(quantity));
         error.is_some_and(|error| error.bound() <= accuracy)
     };
-    let holds = |row: &&CostRow| one_that_holds(report, row).all(within);
+    let holds = |row: &&CostRow| {
+        let is_finer = |other: &&CostRow| {
+            let fixed = row.tolerance.is_none() && other.tolerance.is_none();
+            let method = |row: &CostRow| (row.integrator, row.contact_sweeps);
+            fixed && method(other) == method(row) && other.step <= row.step
+        };
+        within(row) && report.compared().filter(is_finer).all(within)
+    };
     let difference = agreement.agreed_difference();
     let agree = difference <= accuracy;
     let meshes: &[CostRow] = if report.settles { &report.meshes } else { &[] };

@@ -140,7 +140,11 @@ impl CostReport {
 
     /// The run of RK4 with fixed steps that is the basis of speeds, the one with the longest step; absent if none completed.
     pub fn rk4(&self) -> Option<&CostRow> {
-        rk4(self.references.iter().chain(&self.methods))
+        let is_fixed = |row: &&CostRow| {
+            row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
+        };
+        let rows = self.references.iter().chain(&self.methods);
+        rows.filter(is_fixed).max_by(|a, b| a.step.total_cmp(&b.step))
     }
 
     /// The rows of a work-precision comparison: the reference's two methods and all others; none of an ablation.
@@ -406,12 +410,4 @@ pub enum StudyError {
     /// Every method of the reference failed.
     #[error("the reference failed: {0}")]
     Reference(String),
-}
-
-/// The run of RK4 with the longest fixed step.
-pub(super) fn rk4<'a>(rows: impl Iterator<Item = &'a CostRow>) -> Option<&'a CostRow> {
-    let is_fixed = |row: &&CostRow| {
-        row.integrator == Integrator::Rk4 && row.tolerance.is_none() && row.failure.is_none()
-    };
-    rows.filter(is_fixed).max_by(|a, b| a.step.total_cmp(&b.step))
 }

@@ -16,13 +16,14 @@ use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 
 /// Tables of one point.
-static TABLES: [&Layout; 7] = [
+static TABLES: [&Layout; 8] = [
     &tables::PROFILE,
     &tables::STATICS,
     &tables::HISTORY,
     &tables::COURSE,
     &tables::SNAPSHOTS,
     &tables::CONTACTS,
+    &tables::LOADS,
     &tables::ENERGY,
 ];
 

@@ -10,10 +10,12 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_quantity::units::{self, Units};
 use drillsweep_scenario::{PRESETS, Scenario};
 use drillsweep_sim::control::Control;
 use drillsweep_sim::validation::validate;
 use drillsweep_study::errors::ResultErrors;
+use drillsweep_study::loads::{LoadSummary, Worst};
 use drillsweep_worker::{Computed, compute, simulated_time_total};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -36,6 +38,9 @@ pub(crate) struct SimulateArguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Number of lines printed of each spectrum.
+const LINES: usize = 3;
 
 /// Simulates and prints a summary.
 pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
@@ -187,6 +192,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             let lines: Vec<String> = spectrum
                 .lines
                 .iter()
+                .take(LINES)
                 .map(|line| {
                     let doubt = if line.is_resolved { "" } else { " (not resolved by the step)" };
                     format!("{:+.3} Hz {:.4} mm{doubt}", line.frequency_hz, line.amplitude * 1e3)
@@ -200,6 +206,9 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 spectrum.window.to,
                 lines.join(", ")
             )?;
+        }
+        if let Some(loads) = &transient.loads {
+            write!(text, "{}", loads_text(loads))?;
         }
         writeln!(
             text,
@@ -259,6 +268,61 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         provenance.hydraulic_passes
     )?;
     Ok(text)
+}
+
+/// Largest loads of a run, a line each.
+fn loads_text(loads: &LoadSummary) -> String {
+    let unit = |units: &Units, value: f64| units.shown.of(value);
+    let g = |worst: &Worst| unit(&units::ACCELERATION, worst.value);
+    let rpm = |speed: f64| units::ANGULAR_SPEED.field.of(speed);
+    let at = |worst: &Worst| format!("at {:.1} m", worst.measured_depth);
+    let bit = &loads.bit_speed;
+    let severity = loads.bit_severity.map_or_else(String::new, |severity| {
+        let sticks = loads.bit_stick_fraction.unwrap_or(0.0);
+        format!(", stick-slip severity {severity:.2}, sticks {:.0} % of the time", 1e2 * sticks)
+    });
+    let whirl = loads
+        .fastest_whirl
+        .as_ref()
+        .map_or_else(String::new, |whirl| format!(", fastest {:+.1} rpm {}", rpm(whirl.value), at(whirl)));
+    let [above_10g, above_50g] = &loads.shock_rates;
+    [
+        format!("bit speed {:.1} to {:.1} rpm{severity}", rpm(bit.least), rpm(bit.largest)),
+        format!(
+            "acceleration: lateral {:.3} g rms {}, at most {:.3} g {}; by torsion at most {:.3} g {}; axial at most {:.3} g {}",
+            g(&loads.lateral_acceleration_rms),
+            at(&loads.lateral_acceleration_rms),
+            g(&loads.lateral_acceleration),
+            at(&loads.lateral_acceleration),
+            g(&loads.tangential_acceleration),
+            at(&loads.tangential_acceleration),
+            g(&loads.axial_acceleration),
+            at(&loads.axial_acceleration),
+        ),
+        format!(
+            "shocks: {:.1} a minute above 10 g, {:.1} above 50 g",
+            unit(&units::EVENT_RATE, above_10g.value),
+            unit(&units::EVENT_RATE, above_50g.value),
+        ),
+        format!(
+            "whirl: {:.0} % of the length backward, {:.0} % forward, {:.0} % rolling{whirl}",
+            1e2 * loads.backward_fraction,
+            1e2 * loads.forward_fraction,
+            1e2 * loads.rolling_fraction,
+        ),
+        format!(
+            "bending at most {:.2} kN m {}, {:.1} MPa; equivalent stress at most {:.1} MPa {}; side force {:.2} kN {}",
+            unit(&units::TORQUE, loads.bending_moment.value),
+            at(&loads.bending_moment),
+            unit(&units::STRESS, loads.bending_stress.value),
+            unit(&units::STRESS, loads.equivalent_stress.value),
+            at(&loads.equivalent_stress),
+            unit(&units::FORCE, loads.side_force.value),
+            at(&loads.side_force),
+        ),
+    ]
+    .map(|line| line + "\n")
+    .concat()
 }
 
 #[cfg(test)]

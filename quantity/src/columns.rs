@@ -178,6 +178,164 @@ quantities! {
     /// Time that the node stuck.
     STICK_TIME: "stick_time", "", TIME, "stick time";
 
+    // Loads over the window of the statistics, from the ends of all steps.
+    /// Mean angular speed of the lateral motion about the hole's axis, weighted by the square of the distance; positive is forward, in the sense of the rotation.
+    WHIRL_SPEED: "whirl_speed", "", ANGULAR_SPEED, "whirl speed";
+    /// Mean angular speed of the lateral motion about its mean position, weighted by the square of the distance; positive is forward, in the sense of the rotation.
+    ORBIT_WHIRL_SPEED: "orbit_whirl_speed", "", ANGULAR_SPEED, "orbit's whirl speed";
+    /// Share of the time in which the node moves forward about the hole's axis.
+    FORWARD_FRACTION: "forward_fraction", "", RATIO, "forward share";
+    /// Root mean square lateral acceleration, in the fixed frame.
+    LATERAL_ACCELERATION_RMS: "lateral_acceleration_rms", "", ACCELERATION, "lateral acceleration rms";
+    /// Largest lateral acceleration, in the fixed frame.
+    LATERAL_ACCELERATION_PEAK: "lateral_acceleration_peak", "", ACCELERATION, "lateral acceleration peak";
+    /// Time of the largest lateral acceleration.
+    LATERAL_ACCELERATION_PEAK_TIME: "lateral_acceleration_peak_time", "", TIME, "time of the lateral acceleration peak";
+    /// Root mean square axial acceleration.
+    AXIAL_ACCELERATION_RMS: "axial_acceleration_rms", "", ACCELERATION, "axial acceleration rms";
+    /// Largest axial acceleration, either way.
+    AXIAL_ACCELERATION_PEAK: "axial_acceleration_peak", "", ACCELERATION, "axial acceleration peak";
+    /// Time of the largest axial acceleration.
+    AXIAL_ACCELERATION_PEAK_TIME: "axial_acceleration_peak_time", "", TIME, "time of the axial acceleration peak";
+    /// Root mean square acceleration of the surface by torsion: outer radius times angular acceleration.
+    TANGENTIAL_ACCELERATION_RMS: "tangential_acceleration_rms", "", ACCELERATION, "tangential acceleration rms";
+    /// Largest acceleration of the surface by torsion, either way: outer radius times angular acceleration.
+    TANGENTIAL_ACCELERATION_PEAK: "tangential_acceleration_peak", "", ACCELERATION, "tangential acceleration peak";
+    /// Time of the largest acceleration of the surface by torsion.
+    TANGENTIAL_ACCELERATION_PEAK_TIME: "tangential_acceleration_peak_time", "", TIME, "time of the tangential acceleration peak";
+    /// Root mean square reading of an accelerometer across the string that turns with it, on its axis: acceleration less gravity.
+    TURNING_ACCELERATION_RMS: "turning_acceleration_rms", "", ACCELERATION, "turning tool's acceleration rms";
+    /// Largest reading of an accelerometer across the string that turns with it, on its axis: acceleration less gravity.
+    TURNING_ACCELERATION_PEAK: "turning_acceleration_peak", "", ACCELERATION, "turning tool's acceleration peak";
+    /// Time of the largest reading of an accelerometer across the string that turns with it.
+    TURNING_ACCELERATION_PEAK_TIME: "turning_acceleration_peak_time", "", TIME, "time of the turning tool's acceleration peak";
+    /// Number of times that the lateral acceleration rises above 10 g, by time.
+    SHOCK_RATE_10G: "shock_rate_10g", "", EVENT_RATE, "shocks above 10 g";
+    /// Number of times that the lateral acceleration rises above 50 g, by time.
+    SHOCK_RATE_50G: "shock_rate_50g", "", EVENT_RATE, "shocks above 50 g";
+    /// Mean rotation speed.
+    ROTATION_SPEED_MEAN: "rotation_speed_mean", "", ANGULAR_SPEED, "mean rotation speed";
+    /// Lowest rotation speed; negative is backward.
+    ROTATION_SPEED_MIN: "rotation_speed_min", "", ANGULAR_SPEED, "lowest rotation speed";
+    /// Highest rotation speed.
+    ROTATION_SPEED_MAX: "rotation_speed_max", "", ANGULAR_SPEED, "highest rotation speed";
+    /// Stick-slip severity of the rotation speed, (highest - lowest) / (2 mean): 1 if the node just stops at its slowest.
+    STICK_SLIP_SEVERITY: "stick_slip_severity", "", RATIO, "stick-slip severity";
+    /// Share of the time in which the node turns at less than 5 % of the nominal speed, or backward; absent if the string does not rotate.
+    STICK_FRACTION: "stick_fraction", "", RATIO, "stick share";
+    /// Normal force of the wall, mean over time.
+    SIDE_FORCE: "side_force", "", FORCE, "side force";
+    /// Largest normal force of the wall over the window of the statistics.
+    SIDE_FORCE_PEAK: "side_force_peak", "", FORCE, "side force peak";
+    /// Time of the largest normal force of the wall.
+    SIDE_FORCE_PEAK_TIME: "side_force_peak_time", "", TIME, "time of the side force peak";
+    /// Share of the time in contact with the wall.
+    CONTACT_FRACTION: "contact_fraction", "", RATIO, "contact share";
+    /// Share of the time in which the node rolls: it touches the wall and its surface slides at less than 5 % of the speed of its rotation; absent if the string does not rotate.
+    ROLLING_FRACTION: "rolling_fraction", "", RATIO, "rolling share";
+    /// Mean power of friction against sliding, which wears casing and string.
+    SLIDING_POWER: "sliding_power", "", POWER, "sliding power";
+    /// Root mean square bending moment of the element above the node, of the first node of the one below it; the larger of the element's ends.
+    BENDING_MOMENT_RMS: "bending_moment_rms", "", TORQUE, "bending moment rms";
+    /// Largest bending moment of the element above the node, of the first node of the one below it.
+    BENDING_MOMENT_PEAK: "bending_moment_peak", "", TORQUE, "bending moment peak";
+    /// Time of the largest bending moment.
+    BENDING_MOMENT_PEAK_TIME: "bending_moment_peak_time", "", TIME, "time of the bending moment peak";
+    /// Largest bending stress at the outer diameter.
+    BENDING_STRESS_PEAK: "bending_stress_peak", "", STRESS, "bending stress peak";
+    /// Mean effective tension of the element above the node, of the first node of the one below it.
+    TENSION_MEAN: "tension_mean", "", FORCE, "mean tension";
+    /// Smallest effective tension.
+    TENSION_MIN: "tension_min", "", FORCE, "smallest tension";
+    /// Largest effective tension.
+    TENSION_MAX: "tension_max", "", FORCE, "largest tension";
+    /// Mean torque of the element above the node, of the first node of the one below it; negative if it opposes clockwise rotation.
+    TORQUE_MEAN: "torque_mean", "", TORQUE, "mean torque";
+    /// Smallest torque: the strongest that opposes clockwise rotation.
+    TORQUE_MIN: "torque_min", "", TORQUE, "smallest torque";
+    /// Largest torque.
+    TORQUE_MAX: "torque_max", "", TORQUE, "largest torque";
+    /// Largest equivalent stress by von Mises of bending, tension, torque and pressures of the mud.
+    EQUIVALENT_STRESS_PEAK: "equivalent_stress_peak", "", STRESS, "equivalent stress peak";
+    /// Time of the largest equivalent stress.
+    EQUIVALENT_STRESS_PEAK_TIME: "equivalent_stress_peak_time", "", TIME, "time of the equivalent stress peak";
+
+    // The worst of all nodes and elements.
+    /// Largest orbit size of all nodes.
+    LARGEST_ORBIT_SIZE: "largest_orbit_size", "", WIDTH, "largest orbit size of all nodes";
+    /// Measured depth of the largest orbit size.
+    LARGEST_ORBIT_SIZE_DEPTH: "largest_orbit_size_depth", "", DEPTH, "depth of the largest orbit size";
+    /// Largest root mean square lateral acceleration of all nodes.
+    LARGEST_LATERAL_ACCELERATION_RMS: "largest_lateral_acceleration_rms", "", ACCELERATION, "largest lateral acceleration rms of all nodes";
+    /// Measured depth of the largest root mean square lateral acceleration.
+    LARGEST_LATERAL_ACCELERATION_RMS_DEPTH: "largest_lateral_acceleration_rms_depth", "", DEPTH, "depth of the largest lateral acceleration rms";
+    /// Largest lateral acceleration of all nodes.
+    LARGEST_LATERAL_ACCELERATION: "largest_lateral_acceleration", "", ACCELERATION, "largest lateral acceleration of all nodes";
+    /// Measured depth of the largest lateral acceleration.
+    LARGEST_LATERAL_ACCELERATION_DEPTH: "largest_lateral_acceleration_depth", "", DEPTH, "depth of the largest lateral acceleration";
+    /// Largest axial acceleration of all nodes.
+    LARGEST_AXIAL_ACCELERATION: "largest_axial_acceleration", "", ACCELERATION, "largest axial acceleration of all nodes";
+    /// Measured depth of the largest axial acceleration.
+    LARGEST_AXIAL_ACCELERATION_DEPTH: "largest_axial_acceleration_depth", "", DEPTH, "depth of the largest axial acceleration";
+    /// Largest acceleration of the surface by torsion, of all nodes.
+    LARGEST_TANGENTIAL_ACCELERATION: "largest_tangential_acceleration", "", ACCELERATION, "largest tangential acceleration of all nodes";
+    /// Measured depth of the largest acceleration of the surface by torsion.
+    LARGEST_TANGENTIAL_ACCELERATION_DEPTH: "largest_tangential_acceleration_depth", "", DEPTH, "depth of the largest tangential acceleration";
+    /// Highest rate of shocks above 10 g of all nodes.
+    LARGEST_SHOCK_RATE_10G: "largest_shock_rate_10g", "", EVENT_RATE, "most shocks above 10 g of all nodes";
+    /// Measured depth of the highest rate of shocks above 10 g.
+    LARGEST_SHOCK_RATE_10G_DEPTH: "largest_shock_rate_10g_depth", "", DEPTH, "depth of the most shocks above 10 g";
+    /// Highest rate of shocks above 50 g of all nodes.
+    LARGEST_SHOCK_RATE_50G: "largest_shock_rate_50g", "", EVENT_RATE, "most shocks above 50 g of all nodes";
+    /// Measured depth of the highest rate of shocks above 50 g.
+    LARGEST_SHOCK_RATE_50G_DEPTH: "largest_shock_rate_50g_depth", "", DEPTH, "depth of the most shocks above 50 g";
+    /// Largest mean normal force of the wall of all nodes.
+    LARGEST_SIDE_FORCE: "largest_side_force", "", FORCE, "largest side force of all nodes";
+    /// Measured depth of the largest mean normal force of the wall.
+    LARGEST_SIDE_FORCE_DEPTH: "largest_side_force_depth", "", DEPTH, "depth of the largest side force";
+    /// Mean power of friction against sliding, of all nodes together.
+    SLIDING_POWER_TOTAL: "sliding_power_total", "", POWER, "sliding power of all nodes";
+    /// Largest bending moment of all elements.
+    LARGEST_BENDING_MOMENT: "largest_bending_moment", "", TORQUE, "largest bending moment of all elements";
+    /// Measured depth of the element's lower end with the largest bending moment.
+    LARGEST_BENDING_MOMENT_DEPTH: "largest_bending_moment_depth", "", DEPTH, "depth of the largest bending moment";
+    /// Largest bending stress of all elements.
+    LARGEST_BENDING_STRESS: "largest_bending_stress", "", STRESS, "largest bending stress of all elements";
+    /// Measured depth of the element's lower end with the largest bending stress.
+    LARGEST_BENDING_STRESS_DEPTH: "largest_bending_stress_depth", "", DEPTH, "depth of the largest bending stress";
+    /// Largest equivalent stress by von Mises of all elements.
+    LARGEST_EQUIVALENT_STRESS: "largest_equivalent_stress", "", STRESS, "largest equivalent stress of all elements";
+    /// Measured depth of the element's lower end with the largest equivalent stress.
+    LARGEST_EQUIVALENT_STRESS_DEPTH: "largest_equivalent_stress_depth", "", DEPTH, "depth of the largest equivalent stress";
+    /// Mean rotation speed of the bit.
+    BIT_SPEED_MEAN: "bit_speed_mean", "", ANGULAR_SPEED, "mean bit speed";
+    /// Lowest rotation speed of the bit; negative is backward.
+    BIT_SPEED_MIN: "bit_speed_min", "", ANGULAR_SPEED, "lowest bit speed";
+    /// Highest rotation speed of the bit.
+    BIT_SPEED_MAX: "bit_speed_max", "", ANGULAR_SPEED, "highest bit speed";
+    /// Stick-slip severity of the bit, (highest - lowest speed) / (2 mean): 1 if it just stops at its slowest.
+    BIT_STICK_SLIP_SEVERITY: "bit_stick_slip_severity", "", RATIO, "stick-slip severity of the bit";
+    /// Share of the time in which the bit turns at less than 5 % of the nominal speed, or backward; absent if the string does not rotate.
+    BIT_STICK_FRACTION: "bit_stick_fraction", "", RATIO, "stick share of the bit";
+    /// Frequency of the strongest line of the bit's rotation speed; absent if the bit is not recorded.
+    BIT_LINE_FREQUENCY_HZ: "bit_line_frequency_hz", "", FREQUENCY, "frequency of the bit speed";
+    /// Amplitude of the strongest line of the bit's rotation speed.
+    BIT_LINE_AMPLITUDE: "bit_line_amplitude", "", ANGULAR_SPEED, "amplitude of the bit speed";
+    /// Smallest torque of the uppermost element: the strongest that opposes clockwise rotation.
+    TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest torque top";
+    /// Largest torque of the uppermost element.
+    TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest torque top";
+    /// Share of the string's length that whirls backward: moves backward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
+    BACKWARD_WHIRL_FRACTION: "backward_whirl_fraction", "", RATIO, "share in backward whirl";
+    /// Share of the string's length that whirls forward: moves forward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
+    FORWARD_WHIRL_FRACTION: "forward_whirl_fraction", "", RATIO, "share in forward whirl";
+    /// Share of the string's length that rolls on the wall for at least half of the time.
+    ROLLING_WHIRL_FRACTION: "rolling_whirl_fraction", "", RATIO, "share in rolling whirl";
+    /// Fastest mean whirl about the hole's axis of the nodes that whirl forward or backward; absent if none does.
+    FASTEST_WHIRL_SPEED: "fastest_whirl_speed", "", ANGULAR_SPEED, "fastest whirl speed";
+    /// Measured depth of the fastest whirl.
+    FASTEST_WHIRL_DEPTH: "fastest_whirl_depth", "", DEPTH, "depth of the fastest whirl";
+
     // Energy ledger.
     /// Kinetic energy, added mass included.
     KINETIC: "kinetic", "", ENERGY, "kinetic";

@@ -41,6 +41,8 @@ const GALLON: f64 = 0.003_785_411_784;
 const POUND: f64 = 0.453_592_37;
 /// Pound-force \[N\]: a pound under standard gravity of 9.80665 m/s2, exact.
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
+/// Standard gravity \[m/s2\], exact.
+const STANDARD_GRAVITY: f64 = 9.806_65;
 /// Degree \[rad\].
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// A hundred square feet \[m2\], in which yield stresses of mud are read.
@@ -103,6 +105,15 @@ pub static FORCE: Units = shown_in("force", "N", ("kN", 1e3), ("klbf", 1e3 * POU
 pub static TORQUE: Units = shown_in("torque", "N m", ("kN m", 1e3), ("ft lbf", FOOT * POUND_FORCE));
 /// Energies.
 pub static ENERGY: Units = units("energy", "J", ("ft lbf", FOOT * POUND_FORCE));
+/// Powers.
+pub static POWER: Units = units("power", "W", ("hp", 550.0 * FOOT * POUND_FORCE));
+/// Accelerations, read in multiples of standard gravity as tools downhole report them.
+pub static ACCELERATION: Units =
+    shown_in("acceleration", "m/s2", ("g", STANDARD_GRAVITY), ("g", STANDARD_GRAVITY));
+/// Numbers of events by time, read per minute.
+pub static EVENT_RATE: Units = shown_in("rate", "1/s", ("1/min", 1.0 / 60.0), ("1/min", 1.0 / 60.0));
+/// Stresses in solids.
+pub static STRESS: Units = shown_in("stress", "Pa", ("MPa", 1e6), ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)));
 /// Pressures.
 pub static PRESSURE: Units = shown_in("pressure", "Pa", ("MPa", 1e6), ("psi", POUND_FORCE / (INCH * INCH)));
 /// Moduli of solids.
@@ -146,6 +157,9 @@ mod tests {
             (&TORQUE, "ft lbf", 1.355_818, 7),
             (&ENERGY, "ft lbf", 1.355_818, 7),
             (&PRESSURE, "psi", 6894.757, 7),
+            (&STRESS, "ksi", 6_894_757.0, 7),
+            (&POWER, "hp", 745.699_9, 7),
+            (&ACCELERATION, "g", 9.806_65, 15),
             (&MASS, "lb", 0.453_592_37, 15),
             (&SPEED, "ft/s", 0.3048, 15),
             (&ANGLE, "deg", 0.017_453_29, 7),

@@ -67,6 +67,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(results::spectrum))
         .routes(routes!(spectrogram::show))
         .routes(routes!(results::contacts))
+        .routes(routes!(results::loads))
         .routes(routes!(results::energy))
         .routes(routes!(results::course))
         .routes(routes!(statistics::show))

@@ -7,8 +7,8 @@ use super::mesh_estimate::MOST_ELEMENTS;
 use drillsweep_sim::math::signal::sample_range;
 use drillsweep_sim::solve::model::{Model, ModelError};
 use drillsweep_sim::solve::run::{
-    BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries, SnapshotTimes,
-    bit_beside, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
+    BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, LOAD_BYTES, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries,
+    SnapshotTimes, bit_beside, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
     spectrum_windows_at_most,
 };
 
@@ -70,7 +70,8 @@ impl Footprint {
         let is_refined = model.effects.transient && model.elements.len() <= MOST_ELEMENTS;
         let of_finer_meshes = if is_refined { PER_NODE_OF_FINER_MESHES } else { 0 };
         Self {
-            memory_bytes: (PER_NODE + of_finer_meshes) * model.node_count() as u64
+            // Loads take memory twice: as they are and encoded in a checkpoint.
+            memory_bytes: (PER_NODE + of_finer_meshes + 2 * LOAD_BYTES) * model.node_count() as u64
                 + recorded.memory().max(snapshots.memory_of_table())
                 + snapshots.memory_of_blocks()
                 + study,
@@ -195,9 +196,9 @@ impl PlannedSnapshots {
 
 /// Bytes of all tables that the scenario keeps, but for its snapshots.
 fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
-    /// Columns of numbers of the profile, by element; of equilibrium and contacts, by node.
+    /// Columns of numbers of the profile, by element; of equilibrium, contacts and loads, by node.
     const OF_ELEMENTS: usize = 24;
-    const OF_NODES: usize = 23;
+    const OF_NODES: usize = 66;
     let double = size_of::<f64>();
     let small = (model.elements.len() * OF_ELEMENTS + model.node_count() * OF_NODES) * double;
     let ledger = recorded.ledger_rows * size_of::<EnergyRow>() as u64;

@@ -7,6 +7,7 @@ pub mod ensemble;
 pub mod errors;
 pub mod finer;
 pub mod footprint;
+pub mod loads;
 pub mod mesh_estimate;
 pub mod plan;
 pub mod sensitivity;

@@ -4,6 +4,7 @@ use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use drillsweep_sim::force::effect::CONTACT_WORK;
 use serde::Serialize;
 
+use crate::loads::LoadSummary;
 use drillsweep_sim::math::signal::{
     FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, sample_range, weighted_orbit_statistics,
 };
@@ -18,7 +19,7 @@ const BAND_HZ: f64 = 20.0;
 const HIGH_FREQUENCY_HZ: f64 = 100.0;
 
 /// Number of lines reported of each spectrum.
-const LINES: usize = 3;
+const LINES: usize = 8;
 
 /// The equilibrium and the mud around it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -54,6 +55,10 @@ pub struct TransientSummary {
     pub settling: Settling,
     /// Orbits of the recorded nodes over that window.
     pub orbits: Vec<OrbitSummary>,
+    /// Loads of the whole string over that window; absent if no step ended in it.
+    pub loads: Option<LoadSummary>,
+    /// Strongest line of the bit's rotation speed over that window, or its last 80 s; absent if the bit is not recorded, or does not swing.
+    pub bit_line: Option<BitLine>,
     /// Dominant lines of the recorded nodes over the scenario's spectrum windows, or the end of that window.
     pub spectra: Vec<SpectrumSummary>,
     /// Frequency \[Hz\] up to which the longest step resolves a vibration.
@@ -74,6 +79,15 @@ pub struct TransientSummary {
     pub energy_residual_of_bound: Option<f64>,
     /// The same relative to the net work of the contacts; absent if that is less than rounding may leave, as at rest.
     pub energy_residual_ratio: Option<f64>,
+}
+
+/// Line of the bit's rotation speed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BitLine {
+    /// Frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Amplitude \[rad/s\].
+    pub amplitude: f64,
 }
 
 /// The orbit of one node.
@@ -226,6 +240,8 @@ impl TransientSummary {
             simulated_time: records.simulated_time,
             settling: settling.clone(),
             orbits,
+            loads: LoadSummary::new(model, &records.loads, &histories.nodes()),
+            bit_line: BitLine::of(records),
             spectra,
             resolved_hz: records.effort.resolved_hz,
             unresolved_steps: records.effort.unresolved_steps,
@@ -241,6 +257,24 @@ impl TransientSummary {
                 .then(|| last.residual.abs() / records.energy_bound),
             energy_residual_ratio: energy_residual_ratio(records),
         })
+    }
+}
+
+impl BitLine {
+    fn of<H>(records: &Records<H>) -> Option<Self> {
+        let course = &records.course;
+        let window = records.settling.kept_window();
+        let start = course.time(0);
+        let rate_hz = course.rate_hz();
+        let rates = course.twist_rate();
+        let samples = sample_range(window.from - start, window.to - start, rate_hz, rates.len());
+        let rates = rates.get(samples).filter(|rates| !rates.is_empty())?;
+        let spectrum = full_spectrum(rates, &vec![0.0; rates.len()], rate_hz, Window::Hann)
+            .restricted_to(&(0.0..=BAND_HZ));
+        let search = PeakSearch { count: 1, min_separation_hz: 0.5, exclude_mean: true };
+        let line = *spectrum.peaks(&search).first()?;
+        // A real signal has half of its amplitude at either sign.
+        Some(Self { frequency_hz: line.frequency_hz, amplitude: 2.0 * line.amplitude })
     }
 }
 
@@ -315,6 +349,8 @@ impl TransientSummary {
                 growing_mode: None,
             },
             orbits,
+            loads: None,
+            bit_line: None,
             spectra: Vec::new(),
             resolved_hz: 0.0,
             unresolved_steps: 0,

@@ -92,6 +92,13 @@ pub static SPECTRA: Layout = Layout {
     by_node: &[],
 };
 
+/// Strongest spectral lines of the recorded nodes: a row a line, for each node and spectrum window in turn.
+pub static LINES: Layout = Layout {
+    name: "lines",
+    columns: &[&NODE, &MEASURED_DEPTH, &FROM, &TO, &FREQUENCY, &AMPLITUDE],
+    by_node: &[],
+};
+
 /// Contacts with the wall, node by node.
 pub static CONTACTS: Layout = Layout {
     name: "contacts",
@@ -105,6 +112,57 @@ pub static CONTACTS: Layout = Layout {
         &LARGEST_NORMAL_FORCE,
         &CAPTURE_COUNT,
         &STICK_TIME,
+    ],
+    by_node: &[],
+};
+
+/// Loads of every node, and of the element above it, over the window of the statistics.
+pub static LOADS: Layout = Layout {
+    name: "loads",
+    columns: &[
+        &NODE,
+        &MEASURED_DEPTH,
+        &ORBIT_RADIUS_RMS,
+        &WHIRL_SPEED,
+        &ORBIT_WHIRL_SPEED,
+        &FORWARD_FRACTION,
+        &LATERAL_ACCELERATION_RMS,
+        &LATERAL_ACCELERATION_PEAK,
+        &LATERAL_ACCELERATION_PEAK_TIME,
+        &AXIAL_ACCELERATION_RMS,
+        &AXIAL_ACCELERATION_PEAK,
+        &AXIAL_ACCELERATION_PEAK_TIME,
+        &TANGENTIAL_ACCELERATION_RMS,
+        &TANGENTIAL_ACCELERATION_PEAK,
+        &TANGENTIAL_ACCELERATION_PEAK_TIME,
+        &TURNING_ACCELERATION_RMS,
+        &TURNING_ACCELERATION_PEAK,
+        &TURNING_ACCELERATION_PEAK_TIME,
+        &SHOCK_RATE_10G,
+        &SHOCK_RATE_50G,
+        &ROTATION_SPEED_MEAN,
+        &ROTATION_SPEED_MIN,
+        &ROTATION_SPEED_MAX,
+        &STICK_SLIP_SEVERITY,
+        &STICK_FRACTION,
+        &SIDE_FORCE,
+        &SIDE_FORCE_PEAK,
+        &SIDE_FORCE_PEAK_TIME,
+        &CONTACT_FRACTION,
+        &ROLLING_FRACTION,
+        &SLIDING_POWER,
+        &BENDING_MOMENT_RMS,
+        &BENDING_MOMENT_PEAK,
+        &BENDING_MOMENT_PEAK_TIME,
+        &BENDING_STRESS_PEAK,
+        &TENSION_MEAN,
+        &TENSION_MIN,
+        &TENSION_MAX,
+        &TORQUE_MEAN,
+        &TORQUE_MIN,
+        &TORQUE_MAX,
+        &EQUIVALENT_STRESS_PEAK,
+        &EQUIVALENT_STRESS_PEAK_TIME,
     ],
     by_node: &[],
 };
@@ -159,14 +217,16 @@ pub static SPECTROGRAM: Layout =
     Layout { name: "spectrogram", columns: &[&TIME, &FREQUENCY, &AMPLITUDE], by_node: &[] };
 
 /// All of them.
-pub static ALL: [&Layout; 12] = [
+pub static ALL: [&Layout; 14] = [
     &PROFILE,
     &STATICS,
     &HISTORY,
     &COURSE,
     &SNAPSHOTS,
     &SPECTRA,
+    &LINES,
     &CONTACTS,
+    &LOADS,
     &ENERGY,
     &ORBIT,
     &SPECTRUM,

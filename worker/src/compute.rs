@@ -258,7 +258,8 @@ pub fn compute_from(
         warnings: warnings.clone(),
         worker: None,
     };
-    let mut artifacts = point_tables(&model, &equilibrium, records.as_ref(), scratch)?;
+    let run = records.as_ref().zip(transient.as_ref());
+    let mut artifacts = point_tables(&model, &equilibrium, run, scratch)?;
     if let Some(study) = &study {
         artifacts.push(EncodedArtifact::report("cost", &json!(study), study.runs().count(), scratch)?);
     }

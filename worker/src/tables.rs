@@ -10,12 +10,14 @@ use drillsweep_scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
 use drillsweep_sim::math::signal::{FullSpectrum, Window, full_spectrum, sample_range};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::run::{
-    EnergyRow, Histories, OrbitInterval, Records, Series, Settling, SnapshotSeries, SnapshotTimes,
+    ElementLoads, EnergyRow, Histories, LoadRecords, NodeLoads, OrbitInterval, Records, RmsAndPeak, Series,
+    Settling, SnapshotSeries, SnapshotTimes,
 };
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_study::ensemble::spread;
 use drillsweep_study::errors::OtherMember;
-use drillsweep_study::summary::{StaticsSummary, TransientSummary};
+use drillsweep_study::loads::{LoadSummary, Worst};
+use drillsweep_study::summary::{OrbitSummary, StaticsSummary, TransientSummary};
 use drillsweep_table::tables::{self, Layout};
 use drillsweep_table::{Column, Table};
 use serde::Serialize;
@@ -34,7 +36,7 @@ const PIECE_BYTES: usize = 8 << 20;
 pub(crate) fn point_tables(
     model: &Model,
     equilibrium: &Equilibrium,
-    records: Option<&Records<Spool>>,
+    records: Option<(&Records<Spool>, &TransientSummary)>,
     scratch: &Path,
 ) -> Result<Vec<EncodedArtifact>, ArtifactError> {
     let outputs = &model.scenario.recording.outputs;
@@ -46,7 +48,7 @@ pub(crate) fn point_tables(
         small(&tables::PROFILE, &profile(model, equilibrium))?,
         small(&tables::STATICS, &statics(model, equilibrium))?,
     ];
-    let Some(records) = records else { return Ok(artifacts) };
+    let Some((records, summary)) = records else { return Ok(artifacts) };
     match outputs {
         Outputs::Full => artifacts.push(history(model, records, &OrbitOutputs::default(), scratch)?),
         Outputs::Orbits(part) => artifacts.push(history(model, records, part, scratch)?),
@@ -58,7 +60,9 @@ pub(crate) fn point_tables(
         artifacts.push(small(&tables::COURSE, &course(model, records))?);
     }
     artifacts.extend(snapshots(model, records, scratch)?);
+    artifacts.push(small(&tables::LINES, &lines(summary))?);
     artifacts.push(small(&tables::CONTACTS, &contacts(model, records))?);
+    artifacts.push(small(&tables::LOADS, &loads(model, records))?);
     artifacts.push(small(&tables::ENERGY, &energy(records))?);
     Ok(artifacts)
 }
@@ -167,6 +171,11 @@ fn transient_row(transient: &TransientSummary) -> Row {
             row.put(LINE_AMPLITUDE.in_window(&place, window_number), line.amplitude);
         }
     }
+    if let Some(loads) = &transient.loads {
+        row.0.extend(loads_row(loads, &transient.orbits).0);
+    }
+    row.put(&BIT_LINE_FREQUENCY_HZ, transient.bit_line.map(|line| line.frequency_hz));
+    row.put(&BIT_LINE_AMPLITUDE, transient.bit_line.map(|line| line.amplitude));
     row.put(&CONTACT_COUNT, transient.contact_count);
     row.put(&CAPTURE_COUNT, transient.capture_count);
     row.put(&RESOLVED_HZ, transient.resolved_hz);
@@ -176,6 +185,71 @@ fn transient_row(transient: &TransientSummary) -> Row {
     row.put(&ERROR_ESTIMATE_DISPLACEMENT, transient.error_estimate.displacement);
     row.put(&ENERGY_RESIDUAL, transient.energy_residual);
     row.put(&ENERGY_RESIDUAL_RATIO, transient.energy_residual_ratio);
+    row
+}
+
+/// Largest loads of a run, and those of its recorded nodes.
+fn loads_row(loads: &LoadSummary, orbits: &[OrbitSummary]) -> Row {
+    let mut row = Row::default();
+    let mut put_worst = |quantity: &Quantity, depth: &Quantity, worst: Worst| {
+        row.put(quantity, worst.value);
+        row.put(depth, worst.measured_depth);
+    };
+    let [above_10g, above_50g] = loads.shock_rates;
+    for (quantity, depth, worst) in [
+        (&LARGEST_ORBIT_SIZE, &LARGEST_ORBIT_SIZE_DEPTH, loads.orbit_size),
+        (
+            &LARGEST_LATERAL_ACCELERATION_RMS,
+            &LARGEST_LATERAL_ACCELERATION_RMS_DEPTH,
+            loads.lateral_acceleration_rms,
+        ),
+        (&LARGEST_LATERAL_ACCELERATION, &LARGEST_LATERAL_ACCELERATION_DEPTH, loads.lateral_acceleration),
+        (&LARGEST_AXIAL_ACCELERATION, &LARGEST_AXIAL_ACCELERATION_DEPTH, loads.axial_acceleration),
+        (
+            &LARGEST_TANGENTIAL_ACCELERATION,
+            &LARGEST_TANGENTIAL_ACCELERATION_DEPTH,
+            loads.tangential_acceleration,
+        ),
+        (&LARGEST_SHOCK_RATE_10G, &LARGEST_SHOCK_RATE_10G_DEPTH, above_10g),
+        (&LARGEST_SHOCK_RATE_50G, &LARGEST_SHOCK_RATE_50G_DEPTH, above_50g),
+        (&LARGEST_SIDE_FORCE, &LARGEST_SIDE_FORCE_DEPTH, loads.side_force),
+        (&LARGEST_BENDING_MOMENT, &LARGEST_BENDING_MOMENT_DEPTH, loads.bending_moment),
+        (&LARGEST_BENDING_STRESS, &LARGEST_BENDING_STRESS_DEPTH, loads.bending_stress),
+        (&LARGEST_EQUIVALENT_STRESS, &LARGEST_EQUIVALENT_STRESS_DEPTH, loads.equivalent_stress),
+    ] {
+        put_worst(quantity, depth, worst);
+    }
+    row.put(&SLIDING_POWER_TOTAL, loads.sliding_power);
+    row.put(&BIT_SPEED_MEAN, loads.bit_speed.mean);
+    row.put(&BIT_SPEED_MIN, loads.bit_speed.least);
+    row.put(&BIT_SPEED_MAX, loads.bit_speed.largest);
+    row.put(&BIT_STICK_SLIP_SEVERITY, loads.bit_severity);
+    row.put(&BIT_STICK_FRACTION, loads.bit_stick_fraction);
+    row.put(&TORQUE_TOP_MIN, loads.torque_top.least);
+    row.put(&TORQUE_TOP_MAX, loads.torque_top.largest);
+    row.put(&BACKWARD_WHIRL_FRACTION, loads.backward_fraction);
+    row.put(&FORWARD_WHIRL_FRACTION, loads.forward_fraction);
+    row.put(&ROLLING_WHIRL_FRACTION, loads.rolling_fraction);
+    row.put(&FASTEST_WHIRL_SPEED, loads.fastest_whirl.map(|whirl| whirl.value));
+    row.put(&FASTEST_WHIRL_DEPTH, loads.fastest_whirl.map(|whirl| whirl.measured_depth));
+    for orbit in orbits {
+        let Some((_, node, element)) = loads.recorded.iter().find(|(number, ..)| *number == orbit.node)
+        else {
+            continue;
+        };
+        let place = place(orbit.recorded_as);
+        row.put(LATERAL_ACCELERATION_RMS.at(&place), node.lateral_acceleration.rms);
+        row.put(LATERAL_ACCELERATION_PEAK.at(&place), node.lateral_acceleration.peak.value);
+        row.put(AXIAL_ACCELERATION_PEAK.at(&place), node.axial_acceleration.peak.value);
+        row.put(TANGENTIAL_ACCELERATION_PEAK.at(&place), node.tangential_acceleration.peak.value);
+        row.put(TURNING_ACCELERATION_PEAK.at(&place), node.turning_acceleration.peak.value);
+        row.put(WHIRL_SPEED.at(&place), node.whirl_speed);
+        row.put(ORBIT_WHIRL_SPEED.at(&place), node.orbit_whirl_speed);
+        row.put(STICK_SLIP_SEVERITY.at(&place), node.stick_slip_severity());
+        row.put(STICK_FRACTION.at(&place), node.stick_fraction);
+        row.put(BENDING_MOMENT_PEAK.at(&place), element.bending_moment.peak.value);
+        row.put(EQUIVALENT_STRESS_PEAK.at(&place), element.equivalent_stress.value);
+    }
     row
 }
 
@@ -423,6 +497,20 @@ fn spectrum_rows(
     table
 }
 
+fn lines(summary: &TransientSummary) -> Table {
+    let lines = || {
+        summary.spectra.iter().flat_map(|spectrum| spectrum.lines.iter().map(move |line| (spectrum, line)))
+    };
+    let mut table = Table::default();
+    integers(&mut table, &NODE, lines().map(|(spectrum, _)| spectrum.node as i64));
+    numbers(&mut table, &MEASURED_DEPTH, lines().map(|(spectrum, _)| spectrum.measured_depth));
+    numbers(&mut table, &FROM, lines().map(|(spectrum, _)| spectrum.window.from));
+    numbers(&mut table, &TO, lines().map(|(spectrum, _)| spectrum.window.to));
+    numbers(&mut table, &FREQUENCY, lines().map(|(_, line)| line.frequency_hz));
+    numbers(&mut table, &AMPLITUDE, lines().map(|(_, line)| line.amplitude));
+    table
+}
+
 fn contacts<H>(model: &Model, records: &Records<H>) -> Table {
     let (nodes, contacts) = (&model.mesh.nodes, &records.contacts);
     let mut table = Table::default();
@@ -435,6 +523,74 @@ fn contacts<H>(model: &Model, records: &Records<H>) -> Table {
     numbers(&mut table, &LARGEST_NORMAL_FORCE, contacts.iter().map(|c| c.largest_normal_force));
     integers(&mut table, &CAPTURE_COUNT, contacts.iter().map(|c| c.capture_count as i64));
     numbers(&mut table, &STICK_TIME, contacts.iter().map(|c| c.stick_time));
+    table
+}
+
+fn loads<H>(model: &Model, records: &Records<H>) -> Table {
+    let LoadRecords { nodes, elements, .. } = &records.loads;
+    let mut table = Table::default();
+    integers(&mut table, &NODE, (1..=nodes.len()).map(|number| number as i64));
+    let depths = model.mesh.nodes.iter().map(|node| node.measured_depth);
+    numbers(&mut table, &MEASURED_DEPTH, depths.take(nodes.len()));
+    let mut of_node = |quantity: &Quantity, value: &dyn Fn(&NodeLoads) -> f64| {
+        numbers(&mut table, quantity, nodes.iter().map(value));
+    };
+    of_node(&ORBIT_RADIUS_RMS, &|node| node.orbit_radius_rms);
+    of_node(&WHIRL_SPEED, &|node| node.whirl_speed);
+    of_node(&ORBIT_WHIRL_SPEED, &|node| node.orbit_whirl_speed);
+    of_node(&FORWARD_FRACTION, &|node| node.forward_fraction);
+    type Motion = fn(&NodeLoads) -> RmsAndPeak;
+    let motions: [([&Quantity; 3], Motion); 4] = [
+        ([&LATERAL_ACCELERATION_RMS, &LATERAL_ACCELERATION_PEAK, &LATERAL_ACCELERATION_PEAK_TIME], |node| {
+            node.lateral_acceleration
+        }),
+        ([&AXIAL_ACCELERATION_RMS, &AXIAL_ACCELERATION_PEAK, &AXIAL_ACCELERATION_PEAK_TIME], |node| {
+            node.axial_acceleration
+        }),
+        (
+            [&TANGENTIAL_ACCELERATION_RMS, &TANGENTIAL_ACCELERATION_PEAK, &TANGENTIAL_ACCELERATION_PEAK_TIME],
+            |node| node.tangential_acceleration,
+        ),
+        ([&TURNING_ACCELERATION_RMS, &TURNING_ACCELERATION_PEAK, &TURNING_ACCELERATION_PEAK_TIME], |node| {
+            node.turning_acceleration
+        }),
+    ];
+    for ([rms, peak, time], motion) in motions {
+        of_node(rms, &|node| motion(node).rms);
+        of_node(peak, &|node| motion(node).peak.value);
+        of_node(time, &|node| motion(node).peak.time);
+    }
+    of_node(&SHOCK_RATE_10G, &|node| node.shock_rates[0]);
+    of_node(&SHOCK_RATE_50G, &|node| node.shock_rates[1]);
+    of_node(&ROTATION_SPEED_MEAN, &|node| node.rotation_speed.mean);
+    of_node(&ROTATION_SPEED_MIN, &|node| node.rotation_speed.least);
+    of_node(&ROTATION_SPEED_MAX, &|node| node.rotation_speed.largest);
+    // The top of a string that does not rotate has neither.
+    let or_null = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    of_node(&STICK_SLIP_SEVERITY, &|node| or_null(node.stick_slip_severity()));
+    of_node(&STICK_FRACTION, &|node| or_null(node.stick_fraction));
+    of_node(&SIDE_FORCE, &|node| node.side_force);
+    of_node(&SIDE_FORCE_PEAK, &|node| node.largest_side_force.value);
+    of_node(&SIDE_FORCE_PEAK_TIME, &|node| node.largest_side_force.time);
+    of_node(&CONTACT_FRACTION, &|node| node.contact_fraction);
+    of_node(&ROLLING_FRACTION, &|node| or_null(node.rolling_fraction));
+    of_node(&SLIDING_POWER, &|node| node.sliding_power);
+    let mut of_element = |quantity: &Quantity, value: &dyn Fn(&ElementLoads) -> f64| {
+        let above = (0..nodes.len()).map(|node| value(&elements[node.saturating_sub(1)]));
+        numbers(&mut table, quantity, above);
+    };
+    of_element(&BENDING_MOMENT_RMS, &|element| element.bending_moment.rms);
+    of_element(&BENDING_MOMENT_PEAK, &|element| element.bending_moment.peak.value);
+    of_element(&BENDING_MOMENT_PEAK_TIME, &|element| element.bending_moment.peak.time);
+    of_element(&BENDING_STRESS_PEAK, &|element| element.bending_stress);
+    of_element(&TENSION_MEAN, &|element| element.tension.mean);
+    of_element(&TENSION_MIN, &|element| element.tension.least);
+    of_element(&TENSION_MAX, &|element| element.tension.largest);
+    of_element(&TORQUE_MEAN, &|element| element.torque.mean);
+    of_element(&TORQUE_MIN, &|element| element.torque.least);
+    of_element(&TORQUE_MAX, &|element| element.torque.largest);
+    of_element(&EQUIVALENT_STRESS_PEAK, &|element| element.equivalent_stress.value);
+    of_element(&EQUIVALENT_STRESS_PEAK_TIME, &|element| element.equivalent_stress.time);
     table
 }
 

@@ -140,6 +140,28 @@ pub(crate) async fn contacts(
     whole_table(&tables::CONTACTS, app, path, query, headers).await
 }
 
+/// Loads of every node over the window of the statistics
+///
+/// Accelerations in m/s2 (lateral, axial, by torsion, and as a tool that turns with the string reads them), shocks, rotation speed
+/// with stick-slip severity and stick share, whirl, action of the wall, and bending, tension, torque and equivalent stress of the element above
+/// the node. Means and extremes are of the ends of all steps, not of recorded samples.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/loads",
+    tag = "points",
+    operation_id = "get_loads",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn loads(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table(&tables::LOADS, app, path, query, headers).await
+}
+
 /// Energy ledger over the run
 #[utoipa::path(
     get,

@@ -277,6 +277,10 @@ class Point:
         """Contacts of every node with the hole over the run."""
         return self.view("contacts")
 
+    def loads(self) -> Table:
+        """Loads of every node over the window of the statistics: accelerations, whirl, stick-slip, side force, stresses."""
+        return self.view("loads")
+
     def energy(self) -> Table:
         """The energy ledger over the run."""
         return self.view("energy")

@@ -29,6 +29,21 @@ struct NodeSurfaces {
     sliding_speed: Four,
     /// Shares of the normal forces along the adjoining elements \[N\].
     normal_force: Four,
+    /// Friction coefficients at the sliding speeds.
+    friction_coefficient: Four,
+}
+
+/// Action of the wall on four nodes; zero for a node off the wall.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodesAtWall {
+    /// Penetrations \[m\].
+    pub(crate) penetration: Four,
+    /// Signed sizes of the normal forces \[N\]; positive pushes inwards.
+    pub(crate) normal_force: Four,
+    /// Sliding speeds \[m/s\].
+    pub(crate) sliding_speed: Four,
+    /// Powers of friction against sliding \[W\], positive.
+    pub(crate) sliding_power: Four,
 }
 
 /// Action of the wall on four nodes; zero for a node that does not touch.
@@ -81,8 +96,12 @@ impl ContactForces {
     /// Contact forces of a string that does not touch.
     pub(crate) fn none<const D: usize>(forces: &WallForces<D>) -> Self {
         let groups = forces.sites.len();
-        let none =
-            NodeSurfaces { penetration: Four::ZERO, sliding_speed: Four::ZERO, normal_force: Four::ZERO };
+        let none = NodeSurfaces {
+            penetration: Four::ZERO,
+            sliding_speed: Four::ZERO,
+            normal_force: Four::ZERO,
+            friction_coefficient: Four::ZERO,
+        };
         Self {
             groups: vec![GroupContact::none(); groups],
             along: SegmentForces::none(&forces.segments),
@@ -118,17 +137,32 @@ impl ContactForces {
         self.along.copy_from(&other.along);
     }
 
+    /// Action of the wall on a group of four nodes, at the end of a step.
+    #[inline(always)]
+    pub(crate) fn nodes_at_wall(&self, group: usize) -> NodesAtWall {
+        let of_node = &self.groups[group];
+        let at_node = NodesAtWall {
+            penetration: of_node.penetration.unwrap_or(Four::ZERO),
+            normal_force: of_node.normal_force,
+            sliding_speed: of_node.sliding_speed,
+            sliding_power: of_node.friction * of_node.sliding_speed,
+        };
+        let Some(surfaces) = self.surfaces.get(group) else { return at_node };
+        let along = surfaces.friction_coefficient * surfaces.normal_force.abs() * surfaces.sliding_speed;
+        NodesAtWall {
+            penetration: surfaces.penetration,
+            normal_force: at_node.normal_force + surfaces.normal_force,
+            sliding_speed: surfaces.sliding_speed,
+            sliding_power: at_node.sliding_power + along,
+        }
+    }
+
     /// Visits every node in turn with the action of the wall on it.
     #[inline(always)]
     pub(crate) fn each_node(&self, nodes: usize, mut visit: impl FnMut(usize, NodeContact)) {
-        for (index, group) in self.groups.iter().enumerate() {
+        for index in 0..self.groups.len() {
             let first = LANES * index;
-            let (penetration, sliding_speed, normal_force) = match self.surfaces.get(index) {
-                None => (group.penetration.unwrap_or(Four::ZERO), group.sliding_speed, group.normal_force),
-                Some(surfaces) => {
-                    (surfaces.penetration, surfaces.sliding_speed, group.normal_force + surfaces.normal_force)
-                }
-            };
+            let NodesAtWall { penetration, normal_force, sliding_speed, .. } = self.nodes_at_wall(index);
             let [penetration, sliding_speed, normal_force] =
                 [penetration, sliding_speed, normal_force].map(Four::to_array);
             for lane in 0..LANES.min(nodes - first) {
@@ -279,6 +313,7 @@ impl<const D: usize> WallForces<D> {
                 penetration: touching(surface.penetration),
                 sliding_speed: touching(surface.sliding_speed),
                 normal_force: Four::ZERO,
+                friction_coefficient: touching(self.parameters.friction_coefficient(surface.sliding_speed)),
             };
         }
         out.along.add_normal_forces(&mut out.surfaces, |surfaces| &mut surfaces.normal_force);

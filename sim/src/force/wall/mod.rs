@@ -11,7 +11,7 @@ mod lanes;
 mod segments;
 
 pub(crate) use change::SweepChange;
-pub(crate) use lanes::{Compliance, ContactForces, NodeContact, WallForces};
+pub(crate) use lanes::{Compliance, ContactForces, NodeContact, NodesAtWall, WallForces};
 
 /// Entry of the ledger: work of normal forces on the motion.
 pub(crate) const NORMAL_WORK: &str = "normal contact";

@@ -371,6 +371,26 @@ fn arctangent_equals_the_system_library() {
 }
 
 #[test]
+fn sine_and_cosine_equal_the_system_library() {
+    let mut worst = 0.0f64;
+    let near = (0..40_000).map(|step| f64::from(step) * 1e-3);
+    let far = (0..40_000).map(|step| f64::from(step).mul_add(731.37, 0.1));
+    let multiples = (0..4_000).map(|quarter| f64::from(quarter) * std::f64::consts::FRAC_PI_4);
+    for x in near.chain(far).chain(multiples).flat_map(|x| [x, -x]) {
+        let (sin, cos) = Lane::sin_cos(x);
+        let (expected_sin, expected_cos) = f64::sin_cos(x);
+        worst = worst.max((sin - expected_sin).abs()).max((cos - expected_cos).abs());
+    }
+    assert!(worst < 3e-16, "{worst:e}");
+
+    let values = [0.3, -2.9, 57.0, -1e6];
+    let (sin, cos) = Four::new(values).sin_cos();
+    for (lane, value) in values.into_iter().enumerate() {
+        assert_eq!((sin.lane(lane), cos.lane(lane)), Lane::sin_cos(value));
+    }
+}
+
+#[test]
 fn a_singular_row_is_named() {
     let mut matrix = BlockTridiagonal::<DOFS>::zeros(3);
     for row in 0..3 {

@@ -4,6 +4,7 @@ use drillsweep_scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 use super::contact_statistics::ContactStatistics;
+use super::loads::LoadBlocks;
 use crate::PHYSICS_VERSION;
 use crate::key::canonical_json;
 use crate::math::signal::Course;
@@ -33,6 +34,8 @@ pub(super) struct Progress<const D: usize> {
     pub(super) steps: u64,
     pub(super) contacts: Vec<ContactStatistics>,
     pub(super) energy: Vec<EnergyRow>,
+    /// Loads of the last ninety seconds, or of a fixed window.
+    pub(super) loads: LoadBlocks,
     /// Motion that shows whether the run has settled.
     pub(super) course: Course,
     /// Starts of the run's twin, with their ticks, the earliest first: at the start of a fixed orbit window, or every ten seconds of the longest

@@ -8,6 +8,7 @@ mod checkpoint;
 mod contact_statistics;
 mod disturbance;
 mod histories;
+mod loads;
 mod recorded;
 mod records;
 mod settle;
@@ -21,6 +22,7 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use contact_statistics::ContactStatistics;
 pub use disturbance::{DISTURBANCE, disturbance};
 pub use histories::{Histories, NodeHistory, Series};
+pub use loads::{ElementLoads, LOAD_BYTES, LoadRecords, NodeLoads, Peak, RmsAndPeak, SHOCKS_G, Span};
 pub use recorded::{bit_beside, recorded_nodes};
 pub use records::{Outcome, Records, TransientEffort};
 pub use settle::{

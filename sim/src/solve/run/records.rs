@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::checkpoint::Checkpoint;
 use super::contact_statistics::ContactStatistics;
 use super::histories::NodeHistory;
+use super::loads::LoadRecords;
 use super::settle::Settling;
 use crate::math::signal::Course;
 use crate::solve::step::{EnergyRow, ErrorEstimate, SweepMonitor};
@@ -26,6 +27,8 @@ pub struct Records<H = Vec<NodeHistory>> {
     pub histories: H,
     /// The run at the start of its orbit window, or a tenth of a second after it; absent if that is the end.
     pub window_start: Option<Box<Checkpoint>>,
+    /// Loads of every node and element over the window of the statistics.
+    pub loads: LoadRecords,
     /// Contact statistics of every node.
     pub contacts: Vec<ContactStatistics>,
     /// The energy ledger, ten rows a second and one at the end.
@@ -90,6 +93,7 @@ impl Records<()> {
             course,
             histories: (),
             window_start,
+            loads,
             contacts,
             energy,
             energy_bound,
@@ -104,6 +108,7 @@ impl Records<()> {
             course,
             histories,
             window_start,
+            loads,
             contacts,
             energy,
             energy_bound,

@@ -290,6 +290,11 @@ impl Settle {
         self.growing.clear();
     }
 
+    /// Recorded samples from one judgement to the next.
+    pub(super) fn block(&self) -> u64 {
+        self.block
+    }
+
     /// True if the run is to choose its window by settling.
     pub(super) fn is_open(&self) -> bool {
         self.fixed.is_none()

@@ -7,6 +7,7 @@ use drillsweep_scenario::{Integrator, Scenario, TimeWindow};
 use super::checkpoint::{Checkpoint, CheckpointError, Progress};
 use super::contact_statistics::ContactStatistics;
 use super::histories::{NodeHistory, Series};
+use super::loads::{LoadBlocks, Loads, Moment};
 use super::recorded::{bit_beside, recorded_nodes};
 use super::records::{Outcome, Records, TransientEffort};
 use super::settle::{Settle, Settling, course_samples, twin_time};
@@ -52,6 +53,9 @@ const BLOCK_SAMPLES: u64 = 8192;
 /// moments, flows and friction.
 const BELOW_RK4_LIMIT: f64 = 0.95;
 
+/// Longest time \[s\] that RK4 advances at once, so that loads are observed as often as by the other methods.
+const RK4_REACH: f64 = 1e-3;
+
 /// Distance from the axis in hole radii at which a run has diverged, with a wall. A node there is at least a whole hole radius deep in the rock: the
 /// law's spring, of 1e7 N/m in the base case, would push with 1e6 N, the weight of 3.7 km of its drillpipe; sound runs have
 /// penetrations of millimetres.
@@ -84,6 +88,7 @@ pub(super) struct Run<'m, const D: usize> {
     /// Recording intervals that count for the contacts' impulse.
     orbit_samples: Range<u64>,
     settle: Settle,
+    loads: Loads<D>,
     subdivisions: u32,
     /// Samples of a block; a step may add some more.
     block_samples: u64,
@@ -149,8 +154,8 @@ impl<'m, const D: usize> Run<'m, D> {
             (stepping.step / f64::from(subdivisions)).min(resolving_step).min(forces.points.longest_step());
         let hole_radius = 0.5 * scenario.well.hole_diameter;
         let (longest, halvings) = match (stepping.integrator, stepping.tolerance) {
-            // RK4 makes steps of its own within a recording interval.
-            (Integrator::Rk4, _) => (interval, 0),
+            // RK4 makes steps of its own within these.
+            (Integrator::Rk4, _) => (interval.min(RK4_REACH), 0),
             (_, Some(_)) => (longest, HALVINGS),
             (_, None) => (longest, 0),
         };
@@ -183,6 +188,12 @@ impl<'m, const D: usize> Run<'m, D> {
         let block_samples = block_samples(model);
         let block_capacity = (block_samples + of_a_step).min(samples);
         let settle = Settle::new(model, equilibrium, samples, ledger_every);
+        let orbit_samples = orbit_samples(scenario, samples);
+        let fixed = scenario
+            .orbit_window()
+            .map(|_| grid.at_sample(orbit_samples.start)..grid.at_sample(orbit_samples.end));
+        let blocks = (grid.at_sample(settle.block()), fixed);
+        let loads = Loads::new(model, equilibrium, freedoms, &rest, blocks);
         let mut run = Self {
             progress: Progress {
                 course: settle.course(model),
@@ -200,6 +211,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 steps: 0,
                 contacts: vec![ContactStatistics::default(); model.node_count()],
                 energy: Vec::with_capacity(ledger_rows(samples, ledger_every)),
+                loads: LoadBlocks::default(),
                 twin_starts: Vec::new(),
             },
             model,
@@ -215,8 +227,9 @@ impl<'m, const D: usize> Run<'m, D> {
             grid,
             tolerances,
             ledger_every,
-            orbit_samples: orbit_samples(scenario, samples),
+            orbit_samples,
             settle,
+            loads,
             subdivisions,
             block_samples,
             fastest: 0,
@@ -234,6 +247,7 @@ impl<'m, const D: usize> Run<'m, D> {
         self.progress = checkpoint.progress_for(&self.model.scenario, self.model.node_count())?;
         self.ledger.set_work(self.progress.work);
         self.touch();
+        self.begin_loads();
         let progress = &mut self.progress;
         progress
             .energy
@@ -259,6 +273,7 @@ impl<'m, const D: usize> Run<'m, D> {
         }
         self.accelerate()?;
         self.settle.close();
+        self.loads.close();
         let samples = (time * self.model.scenario.recording.rate_hz).round() as u64;
         self.samples = self.samples.min(self.recorded() + samples);
         Ok(())
@@ -339,6 +354,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let settling = settling.unwrap_or_else(|| self.settle.conclude(&self.progress.course, self.samples));
         let scenario = &self.model.scenario;
         let window_start = self.twin_start(settling.window, simulated_time);
+        let load_window = if self.settle.is_open() { settling.kept_window() } else { settling.window };
         let stepping = scenario.accuracy.time_stepping();
         Ok(Outcome::Finished(Box::new(Records {
             rate_hz: scenario.recording.rate_hz,
@@ -347,6 +363,7 @@ impl<'m, const D: usize> Run<'m, D> {
             course: self.progress.course,
             histories: (),
             window_start,
+            loads: self.loads.records(&self.progress.loads, load_window),
             contacts: self.progress.contacts,
             energy: self.progress.energy,
             energy_bound,
@@ -409,8 +426,10 @@ impl<'m, const D: usize> Run<'m, D> {
         let last_row = self.progress.energy.last().copied().into_iter().collect();
         let energy = std::mem::replace(&mut self.progress.energy, last_row);
         let starts = std::mem::take(&mut self.progress.twin_starts);
+        let loads = std::mem::take(&mut self.progress.loads);
         let start = Checkpoint::new(&self.model.scenario, &self.progress);
-        (self.progress.course, self.progress.energy, self.progress.twin_starts) = (course, energy, starts);
+        (self.progress.course, self.progress.energy) = (course, energy);
+        (self.progress.twin_starts, self.progress.loads) = (starts, loads);
         self.progress.twin_starts.push((ticks, start));
     }
 
@@ -435,6 +454,8 @@ impl<'m, const D: usize> Run<'m, D> {
     /// Acceleration and powers at t = 0, with the dynamic friction law: most of the static friction vanishes there.
     fn start(&mut self) -> Result<(), TransientError> {
         self.accelerate()?;
+        self.touch();
+        self.begin_loads();
         self.observe([0.0; 2]);
         Ok(())
     }
@@ -502,6 +523,25 @@ impl<'m, const D: usize> Run<'m, D> {
                 node.largest_normal_force = node.largest_normal_force.max(peak);
             }
         }
+    }
+
+    /// Takes the present state as the start of the next step's loads.
+    fn begin_loads(&mut self) {
+        let (time, angle) = (self.time(), self.model.drive.angle(self.time()));
+        let State { displacement, velocity, acceleration, .. } = &self.progress.state;
+        let wall = &self.acting.wall;
+        self.loads.start(&Moment { time, angle, displacement, velocity, acceleration, wall, peaks: &[] });
+    }
+
+    /// Enters the step that led from `start` ticks to the present into the loads.
+    fn observe_loads(&mut self, start: u64) {
+        let (time, angle) = (self.time(), self.model.drive.angle(self.time()));
+        let Progress { state, ticks, loads, .. } = &mut self.progress;
+        let State { displacement, velocity, acceleration, .. } = &*state;
+        let (wall, peaks) = (&self.acting.wall, self.method.peaks());
+        let moment = Moment { time, angle, displacement, velocity, acceleration, wall, peaks };
+        let h = self.grid.time(*ticks - start);
+        self.loads.observe(&moment, h, [start, *ticks], loads);
     }
 
     /// Records the first sample.
@@ -605,6 +645,7 @@ impl<'m, const D: usize> Run<'m, D> {
         let counted = self.progress.ticks.min(to).saturating_sub(start.max(from));
         self.observe([self.grid.step(level), self.grid.time(counted)]);
         self.note_peaks();
+        self.observe_loads(start);
         self.record_step(start);
         Ok(())
     }

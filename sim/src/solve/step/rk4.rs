@@ -84,6 +84,8 @@ impl<const D: usize> Method<D> for Rk4<D> {
         books: Books<'_, D>,
     ) -> Result<StepMade, StepCollapsed> {
         self.advance_by(forces, time, grid.step(level), state, books)?;
+        // That of the last stage, at the step's end to order 3.
+        state.acceleration.copy_from(&self.rates[3].1);
         Ok(StepMade {
             level,
             next_level: None,

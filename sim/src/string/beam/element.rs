@@ -155,6 +155,12 @@ impl BeamElement {
         difference_row(THETA_Z, self.section.torsional_stiffness() / self.length)
     }
 
+    /// Rows that map the 12 nodal values to the bending moments E I theta_y' and E I theta_x' \[N m\] at the place `xi` from 0 to 1.
+    pub fn bending_rows(&self, xi: f64) -> [ElementVector; 2] {
+        let rows = self.rows(xi);
+        [rows.theta_y_derivative, rows.theta_x_derivative].map(|row| row * self.section.bending_stiffness())
+    }
+
     fn integrate(&self, integrand: impl Fn(&Rows) -> ElementMatrix) -> ElementMatrix {
         GAUSS.iter().fold(ElementMatrix::zeros(), |sum, &(xi, weight)| {
             sum + integrand(&self.rows(xi)) * (weight * self.length)

@@ -76,6 +76,22 @@ impl BeamSection {
         self.youngs_modulus * self.second_moment
     }
 
+    /// Bending stress at the outer diameter by a moment of 1 N m, D_o / (2 I) \[1/m3\].
+    pub fn outer_bending_stress(&self) -> f64 {
+        0.5 * self.outer_diameter / self.second_moment
+    }
+
+    /// Half the difference of hoop and radial stress \[1\] at a radius \[m\] of the wall by a bore pressure of 1 Pa above the annulus' (Lame); zero at
+    /// the middle of a solid bar.
+    pub fn pressure_shear(&self, radius: f64) -> f64 {
+        if radius == 0.0 {
+            return 0.0;
+        }
+        let [outer, inner] =
+            [self.outer_diameter, self.inner_diameter].map(|diameter| 0.25 * diameter * diameter);
+        outer * inner / ((outer - inner) * radius * radius)
+    }
+
     /// Shear parameter a = 12 E I / (G S_r l^2) of an element of length `length` \[m\], equation (6).
     pub fn shear_parameter(&self, length: f64) -> f64 {
         12.0 * self.bending_stiffness() / (self.shear_modulus * self.shear_area * length * length)

@@ -1,0 +1,131 @@
+//! Loads on the string: accelerations, whirl, rotation, action of the wall, bending and stress of every node and element, over the window of a run's
+//! statistics.
+//!
+//! They are accumulated at the ends of accepted steps, so that extremes do not depend on the recording rate. Means over time follow the trapezoidal
+//! rule. A window that is settled is not known before its end, so sums are kept by blocks of ten seconds, and the blocks within the window are
+//! merged.
+
+mod blocks;
+mod elements;
+mod nodes;
+mod statistics;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use drillsweep_scenario::TimeWindow;
+
+pub(super) use blocks::LoadBlocks;
+use blocks::{LoadBlock, LoadWindow};
+use elements::{Elements, element_loads};
+use nodes::{Nodes, node_loads};
+
+pub use blocks::LOAD_BYTES;
+pub use elements::ElementLoads;
+pub use nodes::{NodeLoads, SHOCKS_G};
+pub use statistics::{Peak, RmsAndPeak, Span};
+
+use crate::force::wall::ContactForces;
+use crate::math::dof::Dofs;
+use crate::math::linalg::{Four, NodalField};
+use crate::solve::model::{Model, NodalVector};
+use crate::solve::statics::Equilibrium;
+
+/// Loads over the window of a run's statistics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadRecords {
+    /// Window \[s\]: of a settled one the whole blocks of ten seconds within its last 80 s.
+    pub window: TimeWindow,
+    /// Loads of every node, from the top; empty if no step ended in the window.
+    pub nodes: Vec<NodeLoads>,
+    /// Loads of every element, from the top; empty if no step ended in the window.
+    pub elements: Vec<ElementLoads>,
+}
+
+/// Motion and contact forces at the end of a step.
+pub(super) struct Moment<'a, const D: usize> {
+    /// Time \[s\].
+    pub(super) time: f64,
+    /// Angle of the top \[rad\].
+    pub(super) angle: f64,
+    pub(super) displacement: &'a NodalField<D>,
+    pub(super) velocity: &'a NodalField<D>,
+    pub(super) acceleration: &'a NodalField<D>,
+    pub(super) wall: &'a ContactForces,
+    /// Largest normal forces of nodes within the step \[N\], four side by side; empty if they are those of its ends.
+    pub(super) peaks: &'a [Four],
+}
+
+/// Observer of the loads of a run that solves for D degrees of freedom a node.
+pub(super) struct Loads<const D: usize> {
+    window: LoadWindow,
+    nodes: Nodes<D>,
+    elements: Elements<D>,
+}
+
+impl<const D: usize> Loads<D> {
+    /// Observer of `model`. A settled window is observed in blocks of `block` ticks; a fixed one, `fixed`, in ticks, in one block.
+    pub(super) fn new(
+        model: &Model,
+        equilibrium: &Equilibrium,
+        freedoms: Dofs<D>,
+        rest: &NodalVector,
+        (block, fixed): (u64, Option<Range<u64>>),
+    ) -> Self {
+        Self {
+            window: LoadWindow::new(block, fixed),
+            nodes: Nodes::new(model, freedoms),
+            elements: Elements::new(model, equilibrium, freedoms, rest),
+        }
+    }
+
+    /// Ends observation: the run from here on is compared with another one.
+    pub(super) fn close(&mut self) {
+        self.window = LoadWindow::new(1, Some(0..0));
+    }
+
+    /// Takes the present moment as the start of the next step.
+    pub(super) fn start(&mut self, moment: &Moment<'_, D>) {
+        self.nodes.start(moment);
+        self.elements.start(moment);
+    }
+
+    /// Takes in the moment at the end of a step of `h` \[s\] from `ticks[0]` to `ticks[1]`.
+    pub(super) fn observe(
+        &mut self,
+        moment: &Moment<'_, D>,
+        h: f64,
+        ticks: [u64; 2],
+        blocks: &mut LoadBlocks,
+    ) {
+        let Some(number) = self.window.block_of(ticks) else {
+            self.start(moment);
+            return;
+        };
+        let new_block = || LoadBlock::new(moment.time - h, self.nodes.groups(), self.elements.groups());
+        let block = blocks.of_number(number, new_block);
+        block.end = moment.time;
+        self.nodes.observe(moment, h, &mut block.nodes);
+        self.elements.observe(moment, h, &mut block.elements);
+    }
+
+    /// Loads over the blocks within `window` \[s\].
+    pub(super) fn records(&self, blocks: &LoadBlocks, window: TimeWindow) -> LoadRecords {
+        let Some(whole) = blocks.merged(window) else {
+            return LoadRecords { window, nodes: Vec::new(), elements: Vec::new() };
+        };
+        let duration = whole.end - whole.start;
+        LoadRecords {
+            window: TimeWindow { from: whole.start, to: whole.end },
+            nodes: (0..self.nodes.count())
+                .map(|node| node_loads(&whole.nodes, node, duration, self.nodes.has_rotation()))
+                .collect(),
+            elements: (0..self.elements.count())
+                .map(|element| {
+                    element_loads(&whole.elements, element, duration, self.elements.fibre(element))
+                })
+                .collect(),
+        }
+    }
+}

@@ -1,13 +1,20 @@
 //! Plan of a point, and its modes of vibration about the equilibrium: both follow from its scenario alone, without a run.
 
+use std::f64::consts::TAU;
 use std::fmt::Display;
 
-use drillsweep_scenario::Scenario;
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Place, Quantity};
+use drillsweep_scenario::{NodeChoice, Scenario};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::modes::{ModeSearch, modes};
 use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::string::MeshNode;
 use drillsweep_study::plan::MachineSpeed;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
+use crate::judgement::{Judgement, Line, LineCause, Motion, OperatingLimits, line_causes};
 use crate::problem::{ProblemDetails, ProblemKind};
 
 pub use drillsweep_sim::solve::modes::Modes;
@@ -15,6 +22,9 @@ pub use drillsweep_study::plan::Plan;
 
 /// Up to this frequency modes are searched \[Hz\]: there are about two for each hertz and 200 m, and each takes its time.
 pub const HIGHEST_MODE_HZ: f64 = 50.0;
+
+/// Factor on the highest line up to which modes are searched as its cause.
+const MARGIN: f64 = 1.1;
 
 /// Plan of a scenario with warnings from its equilibrium; with processor times if `speed_json` is the speed that a worker has measured.
 ///
@@ -36,6 +46,84 @@ pub fn modes_up_to(scenario: &Scenario, to_hz: f64) -> Result<Modes, Box<Problem
     let equilibrium = Equilibrium::find(&model).map_err(|error| none("modes", &error))?;
     let search = ModeSearch { to_hz, ..ModeSearch::default() };
     modes(&model, &equilibrium, &search).map_err(|error| none("modes", &error))
+}
+
+/// Diagnosis of a finished point: class of its motion by limits, findings with evidence, and causes of its spectral lines.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+pub struct Diagnosis {
+    /// The judgement.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+    /// Spectral lines of the recorded nodes with their causes, the strongest of each node and window first.
+    pub lines: Vec<LineCause>,
+}
+
+/// Diagnosis of a point by its scenario, its row, and its lines if its outputs keep them; otherwise the strongest line of each node, from the row.
+///
+/// # Errors
+/// The scenario has no model.
+pub fn diagnosis(
+    scenario: &Scenario,
+    row: &Map<String, Value>,
+    lines: Option<Vec<Line>>,
+    limits: &OperatingLimits,
+) -> Result<Diagnosis, Box<ProblemDetails>> {
+    let judgement = Judgement::of_row(row, limits);
+    let model = Model::new(scenario).map_err(|error| none("diagnosis", &error))?;
+    let lines = lines.unwrap_or_else(|| strongest_lines(&model, row));
+    let highest_hz = lines.iter().fold(0.0, |highest: f64, line| highest.max(line.frequency_hz.abs()));
+    // Causes but modes are found without them.
+    let modes = match highest_hz {
+        0.0 => Vec::new(),
+        _ => Equilibrium::find(&model).map_or_else(
+            |_| Vec::new(),
+            |equilibrium| {
+                let to_hz = (MARGIN * highest_hz).min(HIGHEST_MODE_HZ);
+                let search = ModeSearch { to_hz, ..ModeSearch::default() };
+                modes(&model, &equilibrium, &search).map_or_else(|_| Vec::new(), |found| found.modes)
+            },
+        ),
+    };
+    let number = |quantity: &Quantity| row.get(quantity.name).and_then(Value::as_f64);
+    let swing = || {
+        let relative = number(&BIT_LINE_AMPLITUDE)? / number(&BIT_SPEED_MEAN)?.abs();
+        Some([number(&BIT_LINE_FREQUENCY_HZ)?, relative]).filter(|_| relative.is_finite())
+    };
+    let rolling = |node: &MeshNode| {
+        let hz = -model.rotation_speed * node.contact_radius / node.clearance / TAU;
+        Some(hz).filter(|hz| hz.is_finite() && *hz != 0.0)
+    };
+    let motion = Motion {
+        rotation_hz: model.rotation_speed / TAU,
+        torsion: swing(),
+        rolling_hz: model.mesh.nodes.iter().map(rolling).collect(),
+        modes,
+    };
+    Ok(Diagnosis { judgement, lines: line_causes(&lines, &motion) })
+}
+
+/// The strongest line of each recorded node in each window, as the row of a point has them.
+fn strongest_lines(model: &Model, row: &Map<String, Value>) -> Vec<Line> {
+    let number = |name: &str| row.get(name).and_then(Value::as_f64);
+    let window = [&STATISTICS_FROM, &STATISTICS_TO].map(|time| number(time.name).unwrap_or(0.0));
+    let of_node = |choice: &NodeChoice| {
+        let node = model.mesh.chosen_node(*choice)?;
+        let place = match choice {
+            NodeChoice::Node(node) => node.to_string(),
+            NodeChoice::Depth(depth) => Place::of_depth(*depth),
+        };
+        let lines = (1..).map_while(move |number_of_window| {
+            Some(Line {
+                node: node + 1,
+                measured_depth: model.mesh.nodes[node].measured_depth,
+                window,
+                frequency_hz: number(&LINE_FREQUENCY_HZ.in_window(&place, number_of_window))?,
+                amplitude: number(&LINE_AMPLITUDE.in_window(&place, number_of_window))?,
+            })
+        });
+        Some(lines.collect::<Vec<_>>())
+    };
+    model.scenario.recording.nodes.iter().filter_map(of_node).flatten().collect()
 }
 
 fn none(what: &str, error: &impl Display) -> Box<ProblemDetails> {

@@ -10,6 +10,8 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_api::analysis::{self, Diagnosis};
+use drillsweep_api::judgement::{Line, OperatingLimits};
 use drillsweep_quantity::units::{self, Units};
 use drillsweep_scenario::{PRESETS, Scenario};
 use drillsweep_sim::control::Control;
@@ -34,6 +36,9 @@ pub(crate) struct SimulateArguments {
     /// Directory for the tables, as Parquet.
     #[arg(long)]
     output: Option<PathBuf>,
+    /// Changes of the limits by which the run is judged: COLUMN:VALUE or COLUMN:off, separated by commas.
+    #[arg(long, value_parser = OperatingLimits::parse, default_value = "", hide_default_value = true)]
+    limits: OperatingLimits,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -55,10 +60,12 @@ pub(crate) fn simulate(arguments: &SimulateArguments) -> anyhow::Result<()> {
     }
     if arguments.json {
         let mut summary = computed.summary_row();
+        summary.insert("diagnosis".into(), json!(diagnosis(&scenario, &computed, &arguments.limits)?));
         summary.insert("provenance".into(), json!(computed.provenance));
         print(&serde_json::to_string_pretty(&summary)?);
     } else {
         print(summary_text(&scenario, &computed)?.trim_end());
+        print(diagnosis_text(&scenario, &computed, &arguments.limits)?.trim_end());
     }
     Ok(())
 }
@@ -267,6 +274,44 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
         provenance.newton_iterations,
         provenance.hydraulic_passes
     )?;
+    Ok(text)
+}
+
+/// Diagnosis of a run by limits, with the causes of the printed lines.
+fn diagnosis(
+    scenario: &Scenario,
+    computed: &Computed,
+    limits: &OperatingLimits,
+) -> anyhow::Result<Diagnosis> {
+    let lines = computed.transient.iter().flat_map(|transient| &transient.spectra).flat_map(|spectrum| {
+        spectrum.lines.iter().take(LINES).map(|line| Line {
+            node: spectrum.node,
+            measured_depth: spectrum.measured_depth,
+            window: [spectrum.window.from, spectrum.window.to],
+            frequency_hz: line.frequency_hz,
+            amplitude: line.amplitude,
+        })
+    });
+    let row = computed.summary_row();
+    analysis::diagnosis(scenario, &row, Some(lines.collect()), limits)
+        .map_err(|problem| anyhow::anyhow!("{}", problem.detail))
+}
+
+/// Causes of the lines, then the findings with the class last.
+fn diagnosis_text(
+    scenario: &Scenario,
+    computed: &Computed,
+    limits: &OperatingLimits,
+) -> anyhow::Result<String> {
+    let Diagnosis { judgement, lines } = diagnosis(scenario, computed, limits)?;
+    let mut text = String::new();
+    for line in &lines {
+        writeln!(text, "cause of a line at {:.2} m: {}", line.measured_depth, line.sentence)?;
+    }
+    for finding in judgement.findings.iter().skip(1) {
+        writeln!(text, "also: {}", finding.sentence)?;
+    }
+    writeln!(text, "{}: {}", judgement.class.name(), judgement.sentence)?;
     Ok(text)
 }
 

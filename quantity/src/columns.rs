@@ -469,6 +469,8 @@ quantities! {
     INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
     /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
+    /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet.
+    CLASS: "class", "", -, "class";
     /// State of the point, or of its reference run.
     STATE: "state", "", -, "state";
     /// Reason of the point's failure.

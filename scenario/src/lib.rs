@@ -27,7 +27,7 @@ pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use failure::{FailureClass, PointError};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
-pub use nearest::unknown_preset;
+pub use nearest::{nearest, unknown_preset};
 pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};

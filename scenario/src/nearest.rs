@@ -6,7 +6,7 @@ use crate::{PRESETS, Problem};
 const SIMILAR: f64 = 0.7;
 
 /// The most similar of some names, if it is likely meant.
-fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     names
         .into_iter()

@@ -73,6 +73,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(statistics::show))
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
+        .routes(routes!(analysis::diagnosis))
         .routes(routes!(cost::show))
         .routes(routes!(scenarios::list, scenarios::read))
         .routes(routes!(scenarios::show))

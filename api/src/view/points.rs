@@ -11,6 +11,7 @@ use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 
+use crate::judgement::{Judgement, MotionClass, OperatingLimits};
 use crate::point::PointState;
 
 /// Data of a point that the table needs.
@@ -33,7 +34,7 @@ pub struct PointSummary {
 /// The table of a sweep as it is put together point by point, so that in addition only the current point is in memory. Summaries go into
 /// their columns as they are parsed: of a hundred thousand points they are hundreds of megabytes.
 ///
-/// One row a point: `ordinal`, `state`, its parameters, the fields of its summary, of points that are verified the bias of each
+/// One row a point: `ordinal`, `state`, its `class` if it is [judged](PointsTable::judged), its parameters, the fields of its summary, of points that are verified the bias of each
 /// statistic NAME against the reference as `bias_NAME`, and the `error` with its `error_time` \[s\] and `error_node`.
 ///
 /// Columns are the union over all points, in the order in which they are first met; a point that has no
@@ -48,6 +49,9 @@ pub struct PointsTable {
     fields: IndexMap<String, Option<Column>>,
     /// The fields whose values are kept; none if all are.
     kept: Option<HashSet<String>>,
+    /// Limits that classes are judged by; absent if they are not judged.
+    limits: Option<OperatingLimits>,
+    classes: Vec<Option<String>>,
     biases: IndexMap<String, Vec<f64>>,
     errors: Vec<Option<String>>,
     error_times: Vec<f64>,
@@ -62,12 +66,32 @@ impl PointsTable {
         PointsTable { kept: Some(kept), ..PointsTable::default() }
     }
 
+    /// The same with the class of each point by limits.
+    #[must_use]
+    pub fn judged(mut self, limits: OperatingLimits) -> Self {
+        self.limits = Some(limits);
+        self
+    }
+
+    /// Class of a point by the limits; absent without a result.
+    fn class(&self, point: &PointSummary) -> serde_json::Result<Option<MotionClass>> {
+        let is_kept = self.kept.as_ref().is_none_or(|kept| kept.contains(columns::CLASS.name));
+        let Some(limits) = self.limits.as_ref().filter(|_| is_kept) else { return Ok(None) };
+        let judgement = match (&point.error, &point.summary) {
+            (Some(error), _) => Judgement::of_failure(&error.reason, limits),
+            (None, Some(summary)) => Judgement::of_row(&serde_json::from_str(summary)?, limits),
+            (None, None) => return Ok(None),
+        };
+        Ok(Some(judgement.class))
+    }
+
     /// Adds the row of a point.
     ///
     /// # Errors
     /// Its summary is no JSON object.
     pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
         let row = self.ordinals.len();
+        self.classes.push(self.class(&point)?.map(|class| class.name().to_owned()));
         self.ordinals.push(Some(point.ordinal.into()));
         self.states.push(Some(point.state.to_string()));
         for (name, value) in point.parameters {
@@ -98,6 +122,9 @@ impl PointsTable {
         let mut table = Table::default()
             .with(&columns::ORDINAL, Column::Integer(self.ordinals))
             .with(&columns::STATE, Column::Text(self.states));
+        if self.limits.is_some() {
+            table.push(&columns::CLASS, Column::Text(self.classes));
+        }
         for (name, mut values) in self.parameters {
             values.resize(rows, f64::NAN);
             table.push(name, Column::Number(values));

@@ -306,6 +306,7 @@ fn describe(expected_type: &str) -> &str {
 pub(crate) mod value {
     use std::time::Duration;
 
+    use drillsweep_api::judgement::OperatingLimits;
     use drillsweep_api::time_span;
     use serde::{Deserialize, Deserializer, de::Error};
 
@@ -354,6 +355,12 @@ pub(crate) mod value {
             Some(assignments) => Ok(Some(assignments)),
             None => Err(D::Error::custom("must be names with a number each, such as mud.density:1200")),
         }
+    }
+
+    /// Limits of columns: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+    pub(crate) fn limits<'de, D: Deserializer<'de>>(deserializer: D) -> Result<OperatingLimits, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        OperatingLimits::parse(&text).map_err(D::Error::custom)
     }
 
     /// `true` or `false`.

@@ -1,12 +1,14 @@
-//! Plan and modes of a point, which follow from its scenario alone. Both search an equilibrium, and take places for expansions, as dry runs
+//! Plan and modes of a point, which follow from its scenario alone, and its diagnosis. All search an equilibrium, and take places for expansions, as dry runs
 //! do.
 
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::analysis::{self, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::analysis::{self, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::judgement::{Judgement, Line, OperatingLimits};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
+use drillsweep_table::tables;
 use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
@@ -14,7 +16,7 @@ use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
 use crate::answer::format::Format;
 use crate::answer::json::Json;
-use crate::answer::records;
+use crate::answer::{recordings, records};
 use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
@@ -103,6 +105,61 @@ pub(crate) async fn modes(
     let modes = move |_: &mut Work| Ok(analysis::modes_up_to(&point.scenario, to_hz)?);
     let (modes, _memory): (Modes, _) = place.run(modes).await?;
     Ok(tag.on(Json(modes).into_response()))
+}
+
+/// Query of a diagnosis.
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DiagnosisQuery {
+    /// Changes of the default limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
+    /// makes the point `over_limit`; `bit_stick_slip_severity`, `backward_whirl_fraction`, `forward_whirl_fraction` and `largest_shock_rate_10g`
+    /// decide classes of their own.
+    #[serde(default, deserialize_with = "value::limits")]
+    #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
+    limits: OperatingLimits,
+}
+
+/// Diagnosis of a point: class of its motion, and causes of its spectral lines
+///
+/// The class is the most severe of the findings, each in words with the columns that it rests on. Limits apply without a new run. Each line
+/// of the recorded nodes' spectra has its cause: torsion of the string, rotation, rolling on the wall, a combination, or a mode of the
+/// equilibrium; a line without a cause says so.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/diagnosis",
+    tag = "points",
+    operation_id = "get_diagnosis",
+    params(PointPath, DiagnosisQuery, Conditional),
+    responses((status = 200, description = "The diagnosis", body = Diagnosis), (status = 304, description = "The copy is current"), Problems)
+)]
+pub(crate) async fn diagnosis(
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(DiagnosisQuery { limits }): Query<DiagnosisQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let point = point(&app, &id, n).await?;
+    let tag = Tag::of(Format::Json, &("diagnosis", &point.key, &point.summary, &limits));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    if let Some(error) = &point.row.error {
+        let judgement = Judgement::of_failure(&error.reason, &limits);
+        return Ok(tag.on(Json(Diagnosis { judgement, lines: Vec::new() }).into_response()));
+    }
+    // Reports the state of a point without a result.
+    recordings::result_key(&app.store, &id, n).await?;
+    let lines = recordings::stored_if_any(&app.store, &id, n, tables::LINES.name).await?;
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let diagnose = move |_: &mut Work| {
+        let lines = lines.map(|lines| lines.read(None)).transpose()?.and_then(|table| Line::of_table(&table));
+        let summary = point.summary.unwrap_or_default();
+        Ok(analysis::diagnosis(&point.scenario, &summary, lines, &limits)?)
+    };
+    let (diagnosis, _memory): (Diagnosis, _) = place.run(diagnose).await?;
+    Ok(tag.on(Json(diagnosis).into_response()))
 }
 
 async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {

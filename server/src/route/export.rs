@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
+use drillsweep_api::judgement::OperatingLimits;
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{ExportManifest, MissingFile};
 use drillsweep_store::{Artifact, Store, WorkKey};
@@ -120,7 +121,12 @@ impl Archive {
 
     fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
         let table = verified
-            .points(PointsTable::default(), &self.store, &self.id, &self.handle)
+            .points(
+                PointsTable::default().judged(OperatingLimits::default()),
+                &self.store,
+                &self.id,
+                &self.handle,
+            )
             .map_err(failed)?
             .finish();
         csv::write_to(&table, zip).map_err(io::Error::other)

@@ -289,6 +289,12 @@ class Point:
         """Motion over the whole of a run that ends once it has settled, at 20 Hz at most."""
         return self.view("course")
 
+    def diagnosis(self, limits: Mapping[str, float | None] | None = None) -> dict[str, Any]:
+        """Class of the motion by limits (a column's limit in its unit; None takes a default away), and causes of the spectral lines."""
+        changes = {name: "off" if limit is None else repr(float(limit)) for name, limit in (limits or {}).items()}
+        text = ",".join(f"{name}:{limit}" for name, limit in changes.items())
+        return self._client.get_json(f"{self.path}/diagnosis", {"limits": text or None})
+
     def cost(self) -> dict[str, Any]:
         """Cost of accuracy, if the scenario has a `cost_study`."""
         return self._client.get_json(f"{self.path}/cost")

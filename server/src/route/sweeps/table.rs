@@ -5,6 +5,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::ColumnList;
+use drillsweep_api::judgement::OperatingLimits;
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_quantity::Name;
 use drillsweep_store::WorkState;
@@ -36,6 +37,10 @@ pub(crate) struct SweepTableQuery {
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
+    /// Changes of the default limits by which `class` is judged: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    #[serde(default, deserialize_with = "value::limits")]
+    #[param(value_type = Option<String>)]
+    limits: OperatingLimits,
     /// For a map: placement of the values of its parameters; absent means `even`.
     #[param(inline)]
     spacing: Option<MapSpacing>,
@@ -69,7 +74,7 @@ impl From<MapSpacing> for chart::Spacing {
 
 /// One row a point: its parameters and the scalars of its result
 ///
-/// Points without a result have a row with empty fields, and `state` and `error` as the reason. Verified points have the bias of each
+/// The `class` of a point is the most severe that applies by the limits. Points without a result have a row with empty fields, and `state` and `error` as the reason. Verified points have the bias of each
 /// statistic relative to the reference, such as `bias_orbit_radius_rms_49`; the attribute `warnings` reports biases beyond the promise of
 /// the accuracy. A picture shows the columns in `fields` over the parameters that vary: lines over one, a map of the first column over two,
 /// with diamonds at verified points; over more, a slice. Categorical columns, such as `state` and `stable`, have a colour for each value. A
@@ -85,7 +90,7 @@ impl From<MapSpacing> for chart::Spacing {
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
-    Query(SweepTableQuery { format, fields, spacing, slice }): Query<SweepTableQuery>,
+    Query(SweepTableQuery { format, fields, limits, spacing, slice }): Query<SweepTableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
@@ -93,7 +98,7 @@ pub(crate) async fn table(
     let slice = slice.unwrap_or_default();
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
     // Every change of a point or a reference run raises the version.
-    let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, spacing, &slice));
+    let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, &limits, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
     let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
@@ -111,7 +116,8 @@ pub(crate) async fn table(
         let table = match &fields {
             Some(fields) if !format.is_picture() => PointsTable::keeping(fields.iter().map(String::as_str)),
             _ => PointsTable::default(),
-        };
+        }
+        .judged(limits);
         let points = verified.points(table, &store, &id, &runtime)?;
         let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
         if let Some(statics) = statics
@@ -176,7 +182,12 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     let runtime = Handle::current();
     place
         .run(move || {
-            let points = verified.points(PointsTable::keeping([]), &app.store, &id, &runtime)?;
+            let points = verified.points(
+                PointsTable::keeping([]).judged(OperatingLimits::default()),
+                &app.store,
+                &id,
+                &runtime,
+            )?;
             let columns = ColumnList::of(&points.finish());
             app.columns.put(id, sweep.version, columns.clone());
             Ok(Json(columns))

@@ -1,0 +1,190 @@
+//! Limits of columns, from which a point is judged.
+
+use std::collections::BTreeMap;
+
+use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{Name, Quantity};
+use drillsweep_scenario::nearest;
+use serde::{Deserialize, Serialize};
+
+/// Largest number of limits in a request.
+const MOST_LIMITS: usize = 64;
+
+/// Standard gravity \[m/s2\].
+const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// Limits by column, in the column's unit; values that are larger in magnitude exceed them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+#[serde(transparent)]
+pub struct OperatingLimits(BTreeMap<String, f64>);
+
+/// Default limit of a column, with its source.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct LimitSource {
+    /// Column.
+    pub column: &'static str,
+    /// Limit in the column's unit.
+    pub limit: f64,
+    /// Source of the value.
+    pub source: &'static str,
+}
+
+/// Reason for which limits cannot be read.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// An entry is no column with a value.
+    #[error("\"{0}\" is no limit: give COLUMN:VALUE or COLUMN:off, separated by commas")]
+    Form(String),
+    /// The column is no number of a point.
+    #[error("there is no column \"{name}\" with a limit{}", .similar.as_ref().map_or_else(String::new, |name| format!("; did you mean \"{name}\"?")))]
+    NoColumn {
+        /// Name as requested.
+        name: String,
+        /// The most similar name, if any is similar.
+        similar: Option<String>,
+    },
+    /// A limit is no number above zero.
+    #[error("the limit of {0} must be a number greater than 0, or off")]
+    Value(String),
+    /// There are too many.
+    #[error("at most {MOST_LIMITS} limits can be given")]
+    TooMany,
+}
+
+/// Columns whose limits decide a class of their own.
+static OF_CLASSES: [&Quantity; 4] =
+    [&BIT_STICK_SLIP_SEVERITY, &BACKWARD_WHIRL_FRACTION, &FORWARD_WHIRL_FRACTION, &LARGEST_SHOCK_RATE_10G];
+
+/// The default limits.
+pub fn limit_sources() -> [LimitSource; 7] {
+    let limit = |quantity: &'static Quantity, limit: f64, source| LimitSource {
+        column: quantity.name,
+        limit,
+        source,
+    };
+    [
+        limit(
+            &BIT_STICK_SLIP_SEVERITY,
+            1.0,
+            "the bit just stops at its slowest, by definition of the severity",
+        ),
+        limit(&BACKWARD_WHIRL_FRACTION, 0.05, "chosen: more than a stand of a short assembly"),
+        limit(&FORWARD_WHIRL_FRACTION, 0.05, "chosen: more than a stand of a short assembly"),
+        limit(&LARGEST_SHOCK_RATE_10G, 1.0 / 60.0, "chosen: one shock a minute"),
+        limit(
+            &LARGEST_LATERAL_ACCELERATION_RMS,
+            2.0 * STANDARD_GRAVITY,
+            "2 g rms: from there on, field practice calls lateral vibration severe",
+        ),
+        limit(
+            &LARGEST_BENDING_STRESS,
+            20_000.0 * 6_894.757,
+            "20 ksi: largest bending stress for fatigue of grade S-135 without tension (API RP 7G, after Lubinski)",
+        ),
+        limit(
+            &LARGEST_EQUIVALENT_STRESS,
+            75_000.0 * 6_894.757,
+            "75 ksi: least yield strength of grade E (API Spec 5DP)",
+        ),
+    ]
+}
+
+impl Default for OperatingLimits {
+    fn default() -> Self {
+        Self(limit_sources().into_iter().map(|limit| (limit.column.to_owned(), limit.limit)).collect())
+    }
+}
+
+impl OperatingLimits {
+    /// The default limits with changes: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+    ///
+    /// # Errors
+    /// An entry cannot be read, names no column of numbers, or is not above zero, or there are too many.
+    pub fn parse(text: &str) -> Result<Self, LimitError> {
+        let mut limits = Self::default();
+        let entries = text.split(',').map(str::trim).filter(|entry| !entry.is_empty());
+        for (number, entry) in entries.enumerate() {
+            if number >= MOST_LIMITS {
+                return Err(LimitError::TooMany);
+            }
+            let (column, value) =
+                entry.split_once(':').ok_or_else(|| LimitError::Form(shortened(entry).to_owned()))?;
+            let (column, value) = (shortened(column.trim()), value.trim());
+            if Name::parse(column).is_none() {
+                return Err(LimitError::NoColumn {
+                    name: column.to_owned(),
+                    similar: nearest(column, ALL.iter().map(|quantity| quantity.name)).map(str::to_owned),
+                });
+            }
+            if value == "off" {
+                limits.0.remove(column);
+                continue;
+            }
+            let limit = value.parse().ok().filter(|limit: &f64| limit.is_finite() && *limit > 0.0);
+            let limit = limit.ok_or_else(|| LimitError::Value(column.to_owned()))?;
+            limits.0.insert(column.to_owned(), limit);
+        }
+        Ok(limits)
+    }
+
+    /// Limit of a column; absent if it has none.
+    pub(super) fn of(&self, quantity: &Quantity) -> Option<f64> {
+        self.0.get(quantity.name).copied()
+    }
+
+    /// Limits of columns that decide no class of their own.
+    pub(super) fn of_columns(&self) -> impl Iterator<Item = (&str, f64)> {
+        let is_of_class = |column: &str| OF_CLASSES.iter().any(|quantity| quantity.name == column);
+        self.0
+            .iter()
+            .map(|(column, limit)| (column.as_str(), *limit))
+            .filter(move |(column, _)| !is_of_class(column))
+    }
+}
+
+/// The beginning of a text, which no column's name exceeds.
+fn shortened(text: &str) -> &str {
+    const LONGEST: usize = 80;
+    text.char_indices().nth(LONGEST).map_or(text, |(end, _)| &text[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_change_add_and_remove_defaults() {
+        let limits = OperatingLimits::parse(
+            "bit_stick_slip_severity:0.5, orbit_radius_rms_57_7m:2e-3,largest_bending_stress:off,",
+        )
+        .unwrap();
+        assert_eq!(limits.of(&BIT_STICK_SLIP_SEVERITY), Some(0.5));
+        assert_eq!(limits.of(&LARGEST_BENDING_STRESS), None);
+        let others: Vec<_> = limits.of_columns().collect();
+        assert!(others.contains(&("orbit_radius_rms_57_7m", 2e-3)), "{others:?}");
+        assert!(others.iter().all(|(column, _)| *column != "bit_stick_slip_severity"));
+        assert_eq!(OperatingLimits::parse("").unwrap(), OperatingLimits::default());
+    }
+
+    #[test]
+    fn limits_that_cannot_be_read_are_refused_with_the_reason() {
+        let message = |text: &str| OperatingLimits::parse(text).unwrap_err().to_string();
+        assert_eq!(
+            message("largest_side_force"),
+            "\"largest_side_force\" is no limit: give COLUMN:VALUE or COLUMN:off, separated by commas"
+        );
+        assert_eq!(
+            message("larges_side_force:1"),
+            "there is no column \"larges_side_force\" with a limit; did you mean \"largest_side_force\"?"
+        );
+        for value in ["0", "-1", "nan", "inf", "much"] {
+            let text = format!("largest_side_force:{value}");
+            assert_eq!(
+                message(&text),
+                "the limit of largest_side_force must be a number greater than 0, or off"
+            );
+        }
+        let many = "largest_side_force:1,".repeat(MOST_LIMITS + 1);
+        assert_eq!(message(&many), "at most 64 limits can be given");
+    }
+}

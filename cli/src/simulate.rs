@@ -239,7 +239,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             1e3 * run.shortest_step,
             1e3 * run.longest_step,
             transient.resolved_hz,
-            transient.capture_count
+            transient.slip_to_stick_count
         )?;
         let simulated = transient.simulated_time;
         writeln!(

@@ -60,8 +60,8 @@ fn distance(a: &Records, b: &Records) -> f64 {
 #[test]
 fn auto_agrees_with_everything_on_to_rounding() {
     type Change = fn(&mut Scenario);
-    // Scene, degrees of freedom that it leaves.
-    let scenes: [(&str, Change, usize); 7] = [
+    // Name, change, degrees of freedom that it leaves.
+    let scenarios: [(&str, Change, usize); 7] = [
         ("as it is", |_| {}, 6),
         ("dry", |s| s.mud = None, 6),
         ("still mud", |s| s.mud.as_mut().unwrap().flow_rate = 0.0, 6),
@@ -77,7 +77,7 @@ fn auto_agrees_with_everything_on_to_rounding() {
             4,
         ),
     ];
-    for (name, change, degrees_of_freedom) in scenes {
+    for (name, change, degrees_of_freedom) in scenarios {
         let mut scenario = base(0.2, METHODS[1]);
         change(&mut scenario);
         let mut everything = scenario.clone();

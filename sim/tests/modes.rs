@@ -291,7 +291,7 @@ fn cantilever_conveying_fluid_flutters_at_the_published_speed() {
 /// kappa^2 = 1/3, below that the bore's prevails and speeds up waves that travel down.
 #[test]
 fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
-    let scene = |ratio: f64, coriolis: Switch| {
+    let with_ratio = |ratio: f64, coriolis: Switch| {
         let mut scenario = preset("hard/vertical").expect("shipped preset");
         let mut pipe = scenario.string.sections[0];
         pipe.outer_diameter = ratio * scenario.well.hole_diameter;
@@ -322,8 +322,8 @@ fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
         depths.iter().map(|&z| at(z)).collect()
     };
     for ratio in [0.52_f64, 3_f64.sqrt().recip(), 0.65] {
-        let (mud, depths, with) = scene(ratio, Switch::On);
-        let (_, _, without) = scene(ratio, Switch::Off);
+        let (mud, depths, with) = with_ratio(ratio, Switch::On);
+        let (_, _, without) = with_ratio(ratio, Switch::Off);
         // Velocity a sine and displacement a cosine: c times the velocity's derivative is in phase with the displacement.
         let (displacement, velocity) = (field(&depths, PI / 2.0), field(&depths, 0.0));
         let mut force = vec![[0.0; 6]; depths.len()];

@@ -168,7 +168,7 @@ fn transient_row(transient: &TransientSummary) -> Row {
         }
     }
     row.put(&CONTACT_COUNT, transient.contact_count);
-    row.put(&CAPTURE_COUNT, transient.capture_count);
+    row.put(&SLIP_TO_STICK_COUNT, transient.slip_to_stick_count);
     row.put(&RESOLVED_HZ, transient.resolved_hz);
     row.put(&UNRESOLVED_STEPS, transient.unresolved_steps);
     row.put(&LARGEST_NORMAL_FORCE, transient.largest_normal_force);
@@ -433,7 +433,7 @@ fn contacts<H>(model: &Model, records: &Records<H>) -> Table {
     integers(&mut table, &CONTACT_COUNT, contacts.iter().map(|c| c.contact_count as i64));
     numbers(&mut table, &CONTACT_TIME, contacts.iter().map(|c| c.contact_time));
     numbers(&mut table, &LARGEST_NORMAL_FORCE, contacts.iter().map(|c| c.largest_normal_force));
-    integers(&mut table, &CAPTURE_COUNT, contacts.iter().map(|c| c.capture_count as i64));
+    integers(&mut table, &SLIP_TO_STICK_COUNT, contacts.iter().map(|c| c.slip_to_stick_count as i64));
     numbers(&mut table, &STICK_TIME, contacts.iter().map(|c| c.stick_time));
     table
 }

@@ -90,13 +90,13 @@ fn report_with(rows: Vec<Row>, change: impl Fn(&mut Scenario)) -> CostReport {
 }
 
 fn references(a: Measure, b: Measure) -> Vec<Row> {
-    let sweeps = |contact_sweeps, stepping| TimeStepping { contact_sweeps, ..stepping };
+    let iterations = |contact_sweeps, stepping| TimeStepping { contact_sweeps, ..stepping };
     vec![
         (Role::Reference, "A", TimeStepping::fixed(Integrator::Rk4, 5e-5), vec![(a, 60.0)]),
         (
             Role::Reference,
             "B",
-            sweeps(30, TimeStepping::fixed(Integrator::Esdirk4, 1.25e-4)),
+            iterations(30, TimeStepping::fixed(Integrator::Esdirk4, 1.25e-4)),
             vec![(b, 90.0)],
         ),
     ]

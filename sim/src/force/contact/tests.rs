@@ -663,28 +663,28 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
             normal: 2000.0,
             friction: 0.0,
         };
-        let mut sweep = || {
+        let mut iterate = || {
             let contact = implicit_contact(&parameters, &node, &motion(force), 12.6, &yielding);
             force = [contact.force_u, contact.force_v];
             (yielding.force, yielding.normal, yielding.friction) = (force, contact.normal, contact.friction);
             force
         };
         // Friction turns with the direction, which the next contact iteration knows: the remainder falls by mu an iteration.
-        let swept = [sweep(), sweep(), sweep(), sweep(), sweep(), sweep()];
-        let exact = dynamic_contact(&parameters, &node, &motion(swept[5]), 12.6);
+        let iterates = [iterate(), iterate(), iterate(), iterate(), iterate(), iterate()];
+        let exact = dynamic_contact(&parameters, &node, &motion(iterates[5]), 12.6);
         let size = exact.force_u.hypot(exact.force_v);
-        let off = |force: [f64; 2]| (force[0] - swept[5][0]).hypot(force[1] - swept[5][1]) / size;
+        let off = |force: [f64; 2]| (force[0] - iterates[5][0]).hypot(force[1] - iterates[5][1]) / size;
         assert!(exact.normal > 1000.0, "{exact:?}");
-        let left = (exact.force_u - swept[5][0]).hypot(exact.force_v - swept[5][1]) / size;
-        assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {swept:?}");
-        assert!(off(swept[1]) < 0.1, "two sweeps: {swept:?}");
+        let left = (exact.force_u - iterates[5][0]).hypot(exact.force_v - iterates[5][1]) / size;
+        assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {iterates:?}");
+        assert!(off(iterates[1]) < 0.1, "two iterations: {iterates:?}");
     }
 }
 
 /// Friction of the contact iteration before, out of all proportion to the push, turns such a node by less than a right angle: the wall still holds
 /// it, and the iterations come to the same force as from any other start.
 #[test]
-fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
+fn friction_of_the_previous_iteration_cannot_turn_a_node_off_the_wall() {
     let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
     let parameters = parameters(&law);
     let node = ContactNode { clearance: 1e-7, ..NODE };
@@ -697,7 +697,7 @@ fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
         v_rate: rate * compliance * force_v,
         theta_z_rate: 0.0,
     };
-    let swept = |friction: f64| {
+    let iterates = |friction: f64| {
         let mut force = [-2000.0, 0.0];
         let mut yielding = Yielding {
             lateral: compliance,
@@ -714,13 +714,14 @@ fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
             contact
         })
     };
-    let settled = swept(0.0)[9];
+    let settled = iterates(0.0)[9];
     for friction in [2400.0, 2600.0, 1e4, 1e6] {
         for friction in [friction, -friction] {
-            let sweeps = swept(friction);
-            assert!(sweeps.iter().all(|contact| contact.normal > 0.0), "{friction}: {sweeps:?}");
-            let off = (sweeps[9].force_u - settled.force_u).hypot(sweeps[9].force_v - settled.force_v);
-            assert!(off < 1e-2 * settled.normal, "{friction}: {:?} for {settled:?}", sweeps[9]);
+            let iterations = iterates(friction);
+            assert!(iterations.iter().all(|contact| contact.normal > 0.0), "{friction}: {iterations:?}");
+            let off =
+                (iterations[9].force_u - settled.force_u).hypot(iterations[9].force_v - settled.force_v);
+            assert!(off < 1e-2 * settled.normal, "{friction}: {:?} for {settled:?}", iterations[9]);
         }
     }
 }

@@ -4,7 +4,7 @@ use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
 
 use super::register::term;
-use crate::force::term::{LateralWave, Scene};
+use crate::force::term::{EffectContext, LateralWave};
 
 /// Change of frequencies below which the aggressive rule omits an effect.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -36,16 +36,16 @@ pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
             Switch::On => (true, "requested".to_owned()),
             Switch::Off => (false, "switched off".to_owned()),
             Switch::Auto => {
-                let call = (term(effect).called_for)(&Scene { scenario, active: &active });
+                let decision = (term(effect).decide)(&EffectContext { scenario, active: &active });
                 let change = frequency_change(scenario, effect);
                 let neglects = scenario.effects.auto == AutoRule::Aggressive;
-                if call.active && neglects && change < NEGLIGIBLE {
+                if decision.active && neglects && change < NEGLIGIBLE {
                     (
                         false,
                         format!("left out as small: it changes frequencies by about {change:.0e} of them"),
                     )
                 } else {
-                    (call.active, call.reason.to_owned())
+                    (decision.active, decision.reason.to_owned())
                 }
             }
         };

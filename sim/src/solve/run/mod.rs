@@ -31,4 +31,4 @@ pub use snapshots::{SNAPSHOT_BLOCK_BYTES, SnapshotBlock, SnapshotSeries, Snapsho
 pub use step_loop::{BLOCK_BYTES, Block, Keep, LEDGER_RATE_HZ};
 pub use transient::Transient;
 
-pub use crate::solve::step::{DivergenceReason, EnergyRow, ErrorEstimate, SweepMonitor, TransientError};
+pub use crate::solve::step::{ContactIterations, DivergenceReason, EnergyRow, ErrorEstimate, TransientError};

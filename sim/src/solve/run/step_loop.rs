@@ -25,7 +25,7 @@ use crate::solve::step::esdirk::Esdirk;
 use crate::solve::step::forces::{ActingForces, Forces};
 use crate::solve::step::generalized_alpha::{self, GeneralizedAlpha};
 use crate::solve::step::grid::Grid;
-use crate::solve::step::implicit::SweepMonitor;
+use crate::solve::step::implicit::ContactIterations;
 use crate::solve::step::method::{Books, Method, StepAhead, StepMade};
 use crate::solve::step::rk4::{self, Rk4};
 use crate::solve::step::state::State;
@@ -192,7 +192,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 ceiling: grid.top(),
                 state: State::at_rest(&start, forces.points.start(), stepping.step),
                 work: Work::default(),
-                monitor: SweepMonitor::default(),
+                iterations: ContactIterations::default(),
                 errors: ErrorSum::default(),
                 rejected: 0,
                 unresolved: 0,
@@ -360,7 +360,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 unresolved_steps: self.progress.unresolved,
                 step_range: self.progress.step_range,
                 resolved_hz: resolved_hz(stepping.integrator, self.progress.step_range[1]),
-                sweeps: self.progress.monitor,
+                contact_iterations: self.progress.iterations,
             },
         })))
     }
@@ -588,9 +588,9 @@ impl<'m, const D: usize> Run<'m, D> {
         let Ok(made) = method.advance(forces, ahead, &mut progress.state, acting, books) else {
             return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
         };
-        let StepMade { level, next_level, steps, step_range, rejected, unresolved, mut monitor } = made;
+        let StepMade { level, next_level, steps, step_range, rejected, unresolved, mut iterations } = made;
         progress.level = next_level.unwrap_or(progress.level);
-        progress.monitor.merge(&mut monitor);
+        progress.iterations.merge(&mut iterations);
         progress.rejected += rejected;
         progress.unresolved += unresolved;
         progress.steps += steps;

@@ -74,7 +74,7 @@ fn reach<T>(mut look: impl FnMut() -> Option<T>) -> T {
 }
 
 #[test]
-fn each_worker_computes_points_of_its_version_and_a_sweep_says_which_one_is_missing() {
+fn workers_compute_points_of_their_version_and_a_sweep_names_the_missing_one() {
     let service = Service::new();
     let server = Logged::start(&mut service.command(&["serve", "--listen", "127.0.0.1:0"]));
     let address = server.address();

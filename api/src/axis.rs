@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn the_message_names_what_is_missing_or_too_many() {
+    fn the_message_names_missing_and_excess_fields() {
         for (text, message) in [
             (r#"{"from": 1, "count": 3}"#, "a range needs `to` too"),
             (r#"{}"#, "an axis needs `values`, or `from`, `to` and `count`"),

@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_of_a_problem_is_as_long_as_what_was_sent() {
+    fn texts_of_a_problem_are_shorter_than_the_request() {
         let error = |got: Value| FieldProblem {
             pointer: Some(format!("/set/{}", "k".repeat(5_000))),
             parameter: None,

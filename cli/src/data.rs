@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_credentials_is_said_without_them() {
+    fn errors_about_credentials_do_not_contain_them() {
         for (text, reason) in [
             ("", "the profile [default] has no aws_access_key_id"),
             (

@@ -673,7 +673,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_line_says_what_verifying_has_shown() {
+    fn a_second_line_shows_the_verification() {
         let counts = PointCounts { total: 2, running: 1, succeeded: 1, ..PointCounts::default() };
         let verification = SweepVerification { counts, worst: None, warnings: Vec::new() };
         assert_eq!(verification_line(&verification), "verified by the reference: 1 of 2, 1 running");

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_scenes_have_the_damped_cases_damping_run_and_window() {
+    fn closed_presets_have_the_damped_presets_damping_run_and_window() {
         let damped = preset("paper-200m-damped").unwrap();
         let closed: Vec<_> = PRESETS.iter().filter(|(name, _)| name.starts_with("closed/")).collect();
         assert_eq!(closed.len(), 4);

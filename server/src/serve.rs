@@ -140,7 +140,7 @@ async fn reap_expired_leases(mut app: App) {
             }
             Err(error) => tracing::error!(%error, "the search for expired leases failed"),
         }
-        match app.store.finish_what_was_begun(LEFT_BEHIND.as_millis() as i64).await {
+        match app.store.finish_partial_changes(LEFT_BEHIND.as_millis() as i64).await {
             Ok(0) => {}
             Ok(number) => {
                 tracing::warn!(number, "half-stored, half-cancelled or half-deleted sweeps were finished")

@@ -342,7 +342,7 @@ fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
 }
 
 #[test]
-fn without_falling_friction_torsion_does_not_grow() {
+fn without_velocity_weakening_friction_torsion_does_not_grow() {
     // The slope of the friction curve excites it: with mu_d = mu_s there is none.
     let mut scenario = base();
     scenario.contact.dynamic_friction = scenario.contact.static_friction;
@@ -489,7 +489,7 @@ fn stiff_walls_hold_as_supports_do() {
 }
 
 #[test]
-fn what_grows_is_found_on_a_mesh_of_thousands() {
+fn growing_modes_are_found_on_a_mesh_of_thousands() {
     // Velocity-weakening friction excites torsion of 200 m of string; steps of 4 cm or 50 cm are equal for a wave of a kilometre.
     let growing = |length: f64| {
         let mut scenario = preset("hard/elements-5000").expect("shipped preset");
@@ -641,7 +641,7 @@ fn equal_oscillators(nodes: usize) -> Pencil {
 }
 
 #[test]
-fn equal_eigenvalues_are_searched_again_and_those_still_missing_are_told() {
+fn equal_eigenvalues_are_searched_again_and_missing_ones_reported() {
     // A Krylov space from two vectors holds two shapes of an eigenvalue, however many it has.
     let search = ModeSearch { to_hz: 1.0, ..ModeSearch::default() };
     let few = modes_of(&equal_oscillators(1), &[0.0], &search).expect("found");

@@ -502,7 +502,7 @@ mod tests {
     }
 
     #[test]
-    fn what_steps_did_not_resolve_has_no_estimate() {
+    fn unresolved_motion_has_no_estimate() {
         let sound = TransientSummary { energy_residual_of_bound: Some(0.04), ..run() };
         assert!(TimeError::new(&sound, &[], None, None).statistics().is_some());
         for unsound in [

@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mesh_auto_costs_what_each_accuracy_makes_of_it() {
+    fn the_mesh_auto_costs_by_the_accuracy() {
         let mut scenario = preset("paper-200m-damped").unwrap();
         scenario.mesh = Mesh::AUTO;
         let plan = Plan::new(&scenario, None).unwrap();

@@ -128,7 +128,7 @@ fn methods_agree(name: &str, duration: f64, largest_distance: f64) {
 }
 
 #[test]
-fn every_hard_scene_ships_with_its_reason() {
+fn every_hard_scenario_ships_with_its_reason() {
     let hard = PRESETS.iter().filter(|(name, _)| name.starts_with("hard/"));
     assert!(hard.clone().count() >= 25);
     for (name, description) in hard {
@@ -144,7 +144,7 @@ fn every_hard_scene_ships_with_its_reason() {
 const ASKED_OVER: [(&str, f64); 1] = [("hard/high-frequency-torsion", 0.5)];
 
 #[test]
-fn a_finer_step_says_the_same_of_every_hard_scene() {
+fn a_finer_step_confirms_every_hard_scenario() {
     let verdict = |name: &str| {
         let mut scenario = preset(name).expect("shipped preset");
         if let Some((_, duration)) = ASKED_OVER.iter().find(|(asked, _)| *asked == name) {
@@ -252,7 +252,7 @@ fn gauges_without_play_are_held_in_any_direction() {
 }
 
 #[test]
-fn steps_shorten_where_the_ledger_opens() {
+fn steps_shorten_as_the_ledger_opens() {
     // Only the steps take energy from the vibrations in a wall of 1e9 N/m, and local errors do not show it: with steps of 1 ms
     // throughout the run ends by its ledger after 1.8 s. A second method at a fiftieth of the step has nothing to shorten.
     let ended = |accuracy| {
@@ -283,7 +283,7 @@ fn steps_shorten_where_the_ledger_opens() {
 }
 
 #[test]
-fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
+fn a_string_at_rest_costs_at_most_a_few_times_a_turning_one() {
     let effort = |turns: bool| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
         if !turns {
@@ -302,7 +302,7 @@ fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
 }
 
 #[test]
-fn stiff_contact_is_solved_alike_by_two_methods() {
+fn two_methods_agree_on_stiff_contact() {
     methods_agree("hard/stiff-contact-10", 0.2, 0.02);
     methods_agree("hard/stiff-contact-100", 0.05, 0.02);
     // A stiffer wall is penetrated less, by the same force.
@@ -316,7 +316,7 @@ fn stiff_contact_is_solved_alike_by_two_methods() {
 }
 
 #[test]
-fn sharp_friction_stays_within_what_friction_can_do() {
+fn sharp_friction_stays_within_the_bound_of_friction() {
     let run = ScenarioRun::of_preset("hard/sharp-friction");
     let torque = -run.equilibrium.torque[0];
     let most = run.friction_torque() - run.model.scenario.operation.torque_on_bit;
@@ -625,7 +625,7 @@ fn wide_tool_joints_carry_the_string() {
 }
 
 #[test]
-fn string_on_the_wall_weighs_what_it_weighs() {
+fn wall_bears_the_weight_of_the_string() {
     let run = ScenarioRun::of_preset("hard/all-on-wall");
     let touching = run.equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count();
     assert!(touching > 85, "{touching} of 100 nodes");
@@ -649,7 +649,7 @@ fn start_on_the_axis_responds_as_a_round_rotor() {
 }
 
 #[test]
-fn undamped_string_is_told_to_be_unstable() {
+fn undamped_string_is_reported_as_unstable() {
     let run = ScenarioRun::of_preset("hard/undamped-flow-torque");
     assert_eq!(run.last()["dissipated_structure"], 0.0);
     assert_eq!(run.last()["dissipated_fluid"], 0.0);

@@ -40,7 +40,7 @@ fn run(scenario: &Scenario) -> (Records, TransientSummary) {
 }
 
 #[test]
-fn a_run_ends_when_it_has_settled_wherever_it_was_suspended() {
+fn a_suspended_run_ends_once_settled() {
     let scenario = shaft(300.0);
     let (whole, _) = run(&scenario);
     assert_eq!(whole.settling.regime, MotionRegime::Regular);

@@ -63,7 +63,7 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
 
 /// Only an ensemble distinguishes a scenario that amplifies disturbances from one that does not.
 #[test]
-fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
+fn an_ensemble_detects_steps_without_an_error_estimate() {
     let standard = Accuracy::Preset(AccuracyPreset::Standard);
     let runs = |name: &str| {
         let (_, scenario) = scenarios().into_iter().find(|(found, _)| *found == name).expect("is there");

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_what_the_system_says() {
+    fn memory_equals_that_of_the_system() {
         let held = vec![1_u8; 64 << 20];
         let memory = Memory::now().unwrap();
         assert!(std::hint::black_box(&held).iter().all(|&byte| byte == 1));

@@ -47,7 +47,7 @@ fn snapshots_take_no_more_memory_in_a_longer_run() {
 }
 
 #[test]
-fn the_plan_tells_what_memory_a_point_takes_at_most() {
+fn the_plan_bounds_the_memory_of_a_point() {
     let spectra = |mut scenario: Scenario| {
         scenario.recording.spectrum_windows = Some(vec![TimeWindow { from: 0.0, to: scenario.duration }]);
         scenario

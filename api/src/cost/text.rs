@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn scenarios_stand_under_each_other_with_the_verdicts_on_promises() {
+    fn scenarios_are_listed_in_order_with_verdicts_on_promises() {
         let other = CostReport { scenario: "other".to_owned(), ..with_draft(0.041, Some(0.2)) };
         insta::assert_snapshot!(overview(&[report(), other]));
     }

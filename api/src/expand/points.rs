@@ -74,7 +74,7 @@ mod tests {
     use crate::expand::tests::{pointers, problems};
 
     #[test]
-    fn unsafe_time_stepping_is_refused_with_what_would_be_valid() {
+    fn unsafe_time_stepping_is_refused_with_a_valid_step() {
         let of = |accuracy: Value| {
             problems(
                 json!({"preset": "paper-200m", "set": {"accuracy": accuracy}, "axes": {"flow_rate": {"values": [0.01, 0.02]}}}),
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_for_later_points_would_not_have_been_found() {
+    fn checks_skipped_for_later_points_find_nothing() {
         // The second point is bad in the one thing that its axis decides, whichever part of the scenario that is in.
         for (path, values) in [
             ("mud.flow_index", [0.5, -0.5]),

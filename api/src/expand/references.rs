@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_verified_is_refused_where_it_was_asked_for() {
+    fn an_impossible_verification_is_refused_at_its_path() {
         let of = |verify: Value, set: Value| json!({"preset": "paper-200m", "verify": verify, "set": set});
         for verify in [json!(0), json!(-1), json!(1.5), json!(-0.05)] {
             let [(pointer, got, detail)] = problems(of(verify.clone(), json!({}))).try_into().unwrap();

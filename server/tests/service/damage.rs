@@ -80,7 +80,7 @@ async fn no_range_of_a_damaged_file_is_served() {
 }
 
 #[tokio::test]
-async fn what_cannot_be_computed_again_says_so() {
+async fn a_result_whose_repair_failed_is_reported_as_damaged() {
     let bench = Bench::new().await;
     let path = finished(&bench).await;
     damage(&bench, &path, "history").await;
@@ -94,7 +94,7 @@ async fn what_cannot_be_computed_again_says_so() {
 }
 
 #[tokio::test]
-async fn an_export_has_all_but_the_damaged_and_says_what_is_missing() {
+async fn an_export_omits_and_lists_damaged_results() {
     let bench = Bench::new().await;
     let path = finished(&bench).await;
     let whole = bench.get(&format!("{path}/export")).await;

@@ -146,7 +146,7 @@ async fn sweeps_are_listed_newest_first_in_pages() {
 }
 
 #[tokio::test]
-async fn a_sweep_says_that_it_waits_for_a_worker_of_its_version_until_there_is_one() {
+async fn a_sweep_reports_waiting_for_a_worker_of_its_version() {
     let bench = Bench::new().await;
     let physics = i64::from(PHYSICS_VERSION);
     let id =

@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_are_of_what_is_recorded() {
+    fn outputs_cover_recorded_nodes() {
         let keep = |outputs: OrbitOutputs| {
             move |s: &mut Scenario| s.recording.outputs = Outputs::Orbits(outputs.clone())
         };

@@ -38,7 +38,7 @@ mod tests {
     use crate::error::StoreError;
 
     #[tokio::test]
-    async fn what_passes_is_waited_for_and_what_stays_is_told_at_once() {
+    async fn transient_failures_are_retried_and_permanent_ones_returned_at_once() {
         let broken_off = || StoreError::Database(sqlx::Error::Io(Error::from(ErrorKind::ConnectionReset)));
         let attempts = Cell::new(0);
         let attempt = |until: i32, lasting: fn() -> StoreError| {

@@ -43,7 +43,7 @@ impl Store {
     ///
     /// # Errors
     /// The database fails.
-    pub async fn finish_what_was_begun(&self, silence_ms: i64) -> Result<u64> {
+    pub async fn finish_partial_changes(&self, silence_ms: i64) -> Result<u64> {
         let hidden: Vec<String> =
             query(sql::sweep::LEFT_HIDDEN).bind(silence_ms).scalars(&self.database).await?;
         for id in &hidden {

@@ -153,7 +153,7 @@ impl Store {
     /// writing, and its first points may be computed before. Work that is known is not done again, unless the sweep asks
     /// for it: a finished point counts at once, a failed one stays failed, a cancelled one is queued again.
     ///
-    /// If this is not awaited to its end, [`finish_what_was_begun`](Self::finish_what_was_begun) takes the remains away.
+    /// If this is not awaited to its end, [`finish_partial_changes`](Self::finish_partial_changes) takes the remains away.
     ///
     /// # Errors
     /// The idempotency key was used for another request, or the database fails.

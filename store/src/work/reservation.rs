@@ -124,7 +124,7 @@ mod tests {
     use crate::store::StoreConfig;
 
     #[tokio::test]
-    async fn who_wants_a_blob_that_is_being_deleted_waits_and_writes_it_again() {
+    async fn a_write_to_a_blob_under_deletion_waits_and_rewrites_it() {
         let directory = tempfile::tempdir().unwrap();
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Worker)).await.unwrap();
         let blob = BlobId::of(b"history");

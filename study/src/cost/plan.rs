@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_study_looks_at_what_is_read() {
+    fn a_study_covers_the_windows_of_its_scenario() {
         let own = preset("paper-200m").unwrap();
         let rows = planned(|_| {});
         for row in &rows {
@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn members_and_methods_are_those_asked_for() {
+    fn members_and_methods_are_those_requested() {
         let adaptive =
             MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
         let rows = planned(|s| {

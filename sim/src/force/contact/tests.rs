@@ -179,7 +179,7 @@ fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
 
 /// The curve (14) peaks at 2 v_ref mu_d / (xi (1 - xi)), 0.054 m/s in the base case.
 #[test]
-fn friction_of_the_base_case_peaks_where_published() {
+fn friction_of_the_base_case_peaks_at_the_published_speed() {
     let law = parameters(&BASE);
     let peak = (1..2000)
         .map(|i| f64::from(i) * 1e-4)
@@ -261,7 +261,7 @@ fn friction_of_the_sliding_start_is_that_of_the_curve_at_the_speed_of_the_surfac
 }
 
 #[test]
-fn a_share_of_the_friction_scales_what_rubs_and_nothing_else() {
+fn a_share_of_the_friction_scales_friction_alone() {
     for start in [StartFriction::BreakAway, StartFriction::Sliding] {
         let whole = parameters(&BASE).with_friction_at_rest(start);
         let force = |law| static_contact(&law, &NODE, 0.0402, 0.0, 12.6);
@@ -598,7 +598,7 @@ fn opposed_lanes_are_independent() {
 }
 
 #[test]
-fn fast_sliding_is_where_friction_hardly_changes() {
+fn friction_hardly_changes_in_fast_sliding() {
     for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.299), (1.0, 0.5)] {
         let parameters = parameters(&ContactLaw { static_friction, dynamic_friction, ..SOFT });
         let fast: f64 = parameters.fast_sliding();
@@ -764,7 +764,7 @@ fn an_element_deflects_on_the_wall_as_its_beam_does_at_its_ends_and_in_the_middl
 }
 
 #[test]
-fn loads_are_derivatives_of_the_energy_in_the_wall_whatever_part_of_an_element_is_in_it() {
+fn loads_are_derivatives_of_the_energy_of_any_part_in_the_wall() {
     let clearance = SEGMENT.wall.clearance;
     let mut next = numbers();
     let mut parts = [0; 4];
@@ -840,7 +840,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
 }
 
 #[test]
-fn contact_of_an_element_grows_from_zero_wherever_it_begins() {
+fn contact_of_an_element_grows_from_zero_at_any_place() {
     let law = parameters(&FRICTIONLESS);
     let clearance = SEGMENT.wall.clearance;
     // Bulging between its ends, and rolling over one end.

@@ -97,12 +97,12 @@ mod tests {
     }
 
     #[test]
-    fn the_base_case_calls_for_everything() {
+    fn auto_omits_nothing_in_the_base_case() {
         assert_eq!(left_out(|_| {}), [""; 0]);
     }
 
     #[test]
-    fn a_scene_calls_for_what_it_has() {
+    fn auto_omits_effects_that_the_scenario_lacks() {
         let fluid =
             ["fluid_added_mass", "fluid_damping", "fluid_coriolis", "flow_stiffness", "mud_drag", "buoyancy"];
         assert_eq!(left_out(|s| s.mud = None), fluid);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn small_effects_are_left_out_only_where_that_is_asked_for_and_with_an_estimate() {
+    fn the_aggressive_rule_omits_small_effects_with_an_estimate() {
         let mut scenario = paper();
         assert!(decide_effects(&scenario).iter().all(|decision| decision.active));
         scenario.effects.auto = AutoRule::Aggressive;
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_has_one_key_whether_an_effect_is_asked_for_or_called_for() {
+    fn an_effect_on_and_an_effect_that_auto_activates_share_a_key() {
         let mut asked = paper();
         for &effect in Effect::ALL {
             asked.effects.set(effect, Switch::On);

@@ -21,7 +21,7 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use contact_statistics::ContactStatistics;
 pub use disturbance::{DISTURBANCE, disturbance};
 pub use histories::{Histories, NodeHistory, Series};
-pub use recorded::{bit_beside, recorded_nodes};
+pub use recorded::{additional_bit, recorded_nodes};
 pub use records::{Outcome, Records, TransientEffort};
 pub use settle::{
     MotionRegime, OrbitInterval, Settling, course_samples, kept_window_at_most, orbit_window_at_most,

@@ -7,7 +7,7 @@ use drillsweep_scenario::{Integrator, Scenario, TimeWindow};
 use super::checkpoint::{Checkpoint, CheckpointError, Progress};
 use super::contact_statistics::ContactStatistics;
 use super::histories::{NodeHistory, Series};
-use super::recorded::{bit_beside, recorded_nodes};
+use super::recorded::{additional_bit, recorded_nodes};
 use super::records::{Outcome, Records, TransientEffort};
 use super::settle::{Settle, Settling, course_samples, twin_time};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
@@ -103,7 +103,7 @@ pub(super) struct Run<'m, const D: usize> {
 pub struct Block<'a> {
     /// Samples of the recorded nodes.
     pub histories: &'a [NodeHistory],
-    /// The same samples of the bit, if its rotation and torque are recorded in addition: [`bit_beside`](bit_beside).
+    /// The same samples of the bit, if its rotation and torque are recorded in addition: [`additional_bit`](additional_bit).
     pub bit: Option<&'a NodeHistory>,
     /// Snapshots; absent if none are requested.
     pub snapshots: Option<&'a SnapshotBlock>,
@@ -224,7 +224,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 .into_iter()
                 .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
                 .collect(),
-            bit: bit_beside(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
+            bit: additional_bit(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
         };
         run.start()?;
         Ok(run)
@@ -655,7 +655,7 @@ fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
 
 /// Samples of a block of the model's recorded nodes.
 fn block_samples(model: &Model) -> u64 {
-    let nodes = recorded_nodes(model).len() + usize::from(bit_beside(model).is_some());
+    let nodes = recorded_nodes(model).len() + usize::from(additional_bit(model).is_some());
     let bytes = (nodes * Series::ALL.len() * size_of::<f64>()) as u64;
     (BLOCK_BYTES / bytes.max(1)).clamp(1, BLOCK_SAMPLES)
 }

@@ -235,7 +235,7 @@ mod tests {
     use crate::solve::statics::{Equilibrium, contact_at};
 
     #[test]
-    fn path_leads_to_where_friction_holds_a_horizontal_string() {
+    fn path_leads_to_the_friction_equilibrium_of_a_horizontal_string() {
         let (length, elements) = (200.0, 80.0);
         let mut scenario = preset("paper-200m").unwrap();
         scenario.mud = None;

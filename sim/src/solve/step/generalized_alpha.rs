@@ -296,7 +296,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_give_second_order_and_the_wanted_dissipation() {
+    fn parameters_give_second_order_and_the_requested_dissipation() {
         for radius in [0.0, 0.5, SPECTRAL_RADIUS, 0.95] {
             let (alpha_m, alpha_f, beta, gamma) = parameters(radius);
             // Chung and Hulbert (1993): second order, and the two ways to write the radius at infinity agree.

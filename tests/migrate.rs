@@ -144,7 +144,7 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     assert_eq!(wait(&remote_server, &laptop.queued, completed)["counts"]["succeeded"], 2);
     let busy = site.command(&["migrate"]).arg("--to-data").arg(laptop.path().join("busy")).output().unwrap();
     let reason = String::from_utf8_lossy(&busy.stderr).into_owned();
-    assert!(!busy.status.success() && reason.contains("1 workers were heard of"), "{reason}");
+    assert!(!busy.status.success() && reason.contains("1 workers sent a heartbeat"), "{reason}");
     worker.process.signal(Signal::TERM);
     worker.process.0.wait().unwrap();
 

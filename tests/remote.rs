@@ -364,10 +364,10 @@ fn machines_with_different_clocks_use_that_of_the_database() {
     now(&ended["created"]);
     now(&ended["finished"]);
     for point in points(&address, &sweep) {
-        assert_eq!(point["attempts"], 1, "its lease ran out: {point}");
+        assert_eq!(point["attempts"], 1, "its lease expired: {point}");
     }
     for process in workers.iter().chain([&server]) {
-        assert!(!process.log().contains("lease ran out"));
+        assert!(!process.log().contains("lease expired"));
     }
     assert_eq!(checked(&mut site.command(&["check", "--json"])), (2, vec![]));
 }

@@ -43,7 +43,7 @@ fn a_reference_that_cannot_run_a_later_point_is_found() {
     let found = refused(of(1500));
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0].0, "/verify");
-    assert!(found[0].1.starts_with("the reference cannot run this: mesh: "), "{found:?}");
+    assert!(found[0].1.starts_with("not valid at the accuracy `reference`: mesh: "), "{found:?}");
 }
 
 /// The sequence has 2^32 points.

@@ -90,7 +90,7 @@ fn series_name(row: &CostRow) -> String {
         _ if is_preset => PRESETS.to_owned(),
         (Some(_), _) => format!("{method}, adaptive"),
         (None, Integrator::Rk4) => method.to_owned(),
-        (None, _) => format!("{method}, {} sweeps", row.contact_sweeps),
+        (None, _) => format!("{method}, {} iterations", row.contact_sweeps),
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
     fn every_method_is_a_line_from_large_to_small_steps() {
         let chart = chart(&report(), Measure::OrbitSize);
         let names: Vec<_> = chart.series.iter().map(|series| series.name.as_str()).collect();
-        assert_eq!(names, ["RK4", "ESDIRK4(3)6L, 30 sweeps", PRESETS, "ESDIRK4(3)6L, 2 sweeps"]);
+        assert_eq!(names, ["RK4", "ESDIRK4(3)6L, 30 iterations", PRESETS, "ESDIRK4(3)6L, 2 iterations"]);
         let points = |series: usize| -> Vec<_> {
             chart.series[series].points.iter().map(|point| (point.x, point.y, point.label.as_str())).collect()
         };

@@ -70,7 +70,7 @@ impl Client {
         drop(sink);
         if hash(&part)? != entry.hash {
             std::fs::remove_file(&part).with_context(unwritten)?;
-            return Ok(Err("its bytes are not those that the server has; fetch again".to_owned()));
+            return Ok(Err("the file differs from that of the server; fetch again".to_owned()));
         }
         std::fs::rename(&part, file).with_context(|| format!("cannot write {}", file.display()))?;
         Ok(Ok(()))
@@ -114,7 +114,7 @@ impl Client {
                 answer => answer,
             };
             if status != StatusCode::PARTIAL_CONTENT || body.len() as u64 != range.end - range.start {
-                return Ok(Err("it was replaced while it was read; fetch again".to_owned()));
+                return Ok(Err("it was replaced during the download; fetch again".to_owned()));
             }
             return Ok(Ok(body));
         }
@@ -280,7 +280,7 @@ mod tests {
         std::fs::write(&part, damaged).unwrap();
         let server = Server::start(|_| Fate::Answer);
         let problem = server.client().in_chunks(&entry(), &file, 8_000).unwrap().unwrap_err();
-        assert!(problem.contains("not those"), "{problem}");
+        assert!(problem.contains("differs from that of the server"), "{problem}");
         assert!(!file.exists() && !part.exists());
     }
 }

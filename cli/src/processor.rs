@@ -23,8 +23,8 @@ fn supports(leaf_1_ecx: u32, leaf_7_ebx: u32) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "this processor has no {}, which the program was built for; RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release makes \
-         one that does without, to the same results at a twelfth of the speed",
+        "this processor has no {}, which this build requires; RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build \
+         --release builds a portable version with the same results at a twelfth of the speed",
         missing.join(" and no ")
     ))
 }

@@ -373,7 +373,7 @@ impl Service {
             drillsweep_server::serve(self.listeners, self.store.clone(), self.config, stopped(stop)).await;
         // A request that was cut off may hold a connection; the next start folds the write-ahead log in.
         if tokio::time::timeout(LAST_GRACE, self.store.close()).await.is_err() {
-            tracing::warn!("the database is left without closing it");
+            tracing::warn!("the database was not closed in time");
         }
         Ok(served?)
     }

@@ -218,7 +218,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             writeln!(text, "{starts}")?;
         }
         if let Some(time) = computed.histories_part_at {
-            writeln!(text, "the runs part at {time:.2} s: after that only statistics are meaningful")?;
+            writeln!(text, "the runs part at {time:.2} s: after that only statistics are comparable")?;
         }
         for warning in &computed.warnings {
             writeln!(text, "warning: {warning}")?;

@@ -277,7 +277,8 @@ pub(crate) fn delete(arguments: &DeleteArguments) -> anyhow::Result<()> {
 fn deletion_text(id: &str, deletion: &SweepDeletion) -> String {
     let verb = if deletion.dry_run { "would be deleted" } else { "deleted" };
     format!(
-        "{verb}: {id} with {} points; {} results of {:.1} MB belong to no other sweep, and are deleted by the next collection",
+        "{verb}: {id} with {} points; {} results of {:.1} MB belong to no other sweep and are deleted by the next \
+         garbage collection",
         deletion.points,
         deletion.results,
         deletion.bytes as f64 * 1e-6
@@ -313,7 +314,7 @@ struct Changes {
     /// Remove all tags.
     #[arg(long, conflicts_with = "tags")]
     no_tags: bool,
-    /// Keep the sweep and all that belongs to it, whatever its age.
+    /// Keep the sweep and its data regardless of age.
     #[arg(long)]
     pin: bool,
     /// Remove the pin: the sweep expires like others.
@@ -665,10 +666,10 @@ mod tests {
         assert_eq!(
             waiting(&[9, 10]),
             "a running: 2 points, 2 queued\n\
-             queued points wait for a worker of physics version 11: those heard of in the last 100 s compute versions 9, 10"
+             queued points wait for a worker of physics version 11: workers with a heartbeat in the last 100 s compute versions 9, 10"
         );
         assert!(
-            waiting(&[]).ends_with("of physics version 11: no worker has been heard of in the last 100 s")
+            waiting(&[]).ends_with("of physics version 11: no worker has sent a heartbeat in the last 100 s")
         );
     }
 

@@ -108,7 +108,7 @@ pub(crate) async fn show() -> impl IntoResponse {
 }
 
 async fn no_such_route(uri: Uri) -> Error {
-    let detail = format!("there is nothing at {}; the routes are listed at /openapi.json", uri.path());
+    let detail = format!("there is no route {}; the routes are listed at /openapi.json", uri.path());
     Error::new(ProblemKind::NoSuchRoute, detail)
 }
 

@@ -30,7 +30,8 @@ pub enum StoreError {
     Migration(#[source] MigrateError),
     /// Another version of this program made the schema: its migrations are not those of this one.
     #[error(
-        "database schema: another version of drillsweep made it, and this one does not read it ({0}); start with a new database, or use that version"
+        "database schema: written by a version of drillsweep that this one cannot read ({0}); start with a new \
+         database, or use that version"
     )]
     OtherSchema(#[source] MigrateError),
     /// The object store failed.
@@ -48,7 +49,7 @@ pub enum StoreError {
     #[error("the content of the blob {0} does not match its hash")]
     BlobDamaged(BlobId),
     /// A range of bytes is empty, or begins beyond the end of the blob.
-    #[error("the blob {0} has no such bytes")]
+    #[error("the range is outside of the blob {0}")]
     NoSuchRange(BlobId),
     /// A directory could not be made, or the database's lock file not taken.
     #[error("{path}: {source}")]
@@ -82,13 +83,13 @@ pub enum StoreError {
     #[error("random numbers: {0}")]
     Random(String),
     /// An idempotency key was used for another request.
-    #[error("the idempotency key was used for another request before")]
+    #[error("the idempotency key belongs to another request")]
     IdempotencyConflict,
     /// The sweep that an idempotency key was used for is just being stored.
-    #[error("the sweep of this idempotency key is just being stored")]
+    #[error("the sweep of this idempotency key is still being stored")]
     Arriving,
     /// A sweep was not shown in time, and was taken away.
-    #[error("storing the sweep took so long that it was taken away as if its process had died")]
+    #[error("storing the sweep took too long, and it was removed as abandoned")]
     TakenAway,
 }
 

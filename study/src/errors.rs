@@ -225,7 +225,8 @@ impl TimeError {
             ));
         }
         if others.is_empty() && twin.is_none() {
-            let condition = "the scenario amplifies disturbances no more than most do; one run cannot measure it, ensemble=2 does";
+            let condition =
+                "the scenario amplifies disturbances no more than most do; ensemble=2 measures it";
             return TimeError::Conditional { statistics, condition: condition.into() };
         }
         TimeError::Estimated { statistics, amplification }

@@ -89,7 +89,7 @@ impl fmt::Display for StartsCompared {
         }
         write!(
             formatter,
-            "; either the scenario has hysteresis or the window begins before the start is forgotten"
+            "; either the scenario has hysteresis or the window begins before the transient of the start has decayed"
         )
     }
 }

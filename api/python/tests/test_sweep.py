@@ -104,11 +104,11 @@ def test_a_sweep_without_workers_reports_the_missing_version(tmp_path: Path) -> 
     service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
     with Client(service.server) as client:
         run = client.run("paper-200m", set=SHORT)
-        assert "no worker has been heard of" in (run.waiting_for or "")
+        assert "no worker has sent a heartbeat" in (run.waiting_for or "")
         stream = io.StringIO()
         ProgressBar(stream).show(run)
         assert "0 running, waiting for a worker" in stream.getvalue()
-        with pytest.raises(TimeoutError, match="no worker has been heard of"):
+        with pytest.raises(TimeoutError, match="no worker has sent a heartbeat"):
             run.wait(timeout=0.2, progress=False)
     service.stop()
 

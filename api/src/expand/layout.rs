@@ -52,7 +52,7 @@ impl<'a> Layout<'a> {
                     problems.push(format!("{pointer}/count"), Some((*count).into()), detail);
                 }
                 Axis::Interval { .. } if !design.is_drawn() => {
-                    problems.push(pointer, None, "a range needs `count` too");
+                    problems.push(pointer, None, "a range also needs `count`");
                 }
                 _ => {}
             }

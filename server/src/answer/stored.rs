@@ -219,18 +219,19 @@ const RECOMPUTING: Duration = Duration::from_secs(30);
 
 /// Problem of a lost table, with its repair.
 fn damaged(name: &str, repair: Repair) -> Error {
-    let is_lost = format!("the table {name} is lost or was changed in storage, and nothing of it is served");
+    let is_lost = format!("the stored table {name} is missing or damaged");
     let consequence = match repair {
         Repair::Queued | Repair::UnderWay => {
-            let detail = format!("{is_lost}; its point is computed again: request it when that is done");
+            let detail = format!("{is_lost}; its point is being recomputed, try again later");
             return Error::temporary(ProblemKind::Recomputing, detail, RECOMPUTING);
         }
-        Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
-                                submit it again to retry"
-            .to_owned(),
+        Repair::TriedBefore => {
+            "recomputing its point failed, with the reason in the point's `error`; submit it again to retry"
+                .to_owned()
+        }
         Repair::OtherNumbers(version) => format!(
-            "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \
-             {PHYSICS_VERSION}"
+            "it is of physics version {version}, which no worker computes any more: submit the scenario again, for \
+             version {PHYSICS_VERSION}"
         ),
         Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
     };

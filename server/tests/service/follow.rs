@@ -158,7 +158,7 @@ async fn a_sweep_reports_waiting_for_a_worker_of_its_version() {
         (&nobody["physics_version"], &nobody["worker_physics_versions"]),
         (&json!(physics), &json!([]))
     );
-    assert!(nobody["reason"].as_str().unwrap().contains("no worker has been heard of"), "{nobody}");
+    assert!(nobody["reason"].as_str().unwrap().contains("no worker has sent a heartbeat"), "{nobody}");
 
     for version in [physics + 1, physics - 1] {
         bench.store.register_worker(&worker(version)).await.unwrap();

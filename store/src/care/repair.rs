@@ -64,7 +64,7 @@ impl Store {
         tx.commit().await?;
         if repair == Repair::Queued {
             let key = blake3::Hash::from_bytes(*key).to_hex();
-            tracing::warn!(key = key.as_str(), %blob, "a damaged result is computed again");
+            tracing::warn!(key = key.as_str(), %blob, "a damaged result is queued for recomputation");
         }
         Ok(repair)
     }

@@ -20,7 +20,7 @@ pub async fn with_backoff<T, F: Future<Output = Result<T>>>(mut attempt: impl Fn
     loop {
         match attempt().await {
             Err(error) if error.is_busy() && Instant::now() + pause < deadline => {
-                tracing::warn!(%error, "the database does not answer; trying again");
+                tracing::warn!(%error, "the database does not answer; retrying");
             }
             ended => return ended,
         }

@@ -186,7 +186,7 @@ impl PostgresTransaction {
 /// nevertheless, and the next one that comes applies it.
 pub(crate) async fn apply_transitions(connections: &Connections) {
     if let Err(error) = apply_all(connections).await {
-        tracing::warn!(%error, "the consequences of changes of points are left to others");
+        tracing::warn!(%error, "pending changes of points are left to other processes");
     }
 }
 

@@ -183,7 +183,7 @@ impl Store {
             Err(error) => {
                 // Its remains are hidden, and if this fails too they are taken away later.
                 if let Err(error) = self.take_away(&sweep.id).await {
-                    tracing::warn!(%error, sweep = sweep.id, "half a sweep is left for later");
+                    tracing::warn!(%error, sweep = sweep.id, "a partially stored sweep is left to a later cleanup");
                 }
                 Err(error)
             }
@@ -236,7 +236,7 @@ impl Store {
             // Before it is seen, so that it is read by plans for its size, and while others may write. It can be read without.
             tx.commit_for_now().await?;
             if let Err(error) = query(sql::submit::ANALYZE).execute(&self.database).await {
-                tracing::warn!(%error, "the planner's statistics are left as they were");
+                tracing::warn!(%error, "the planner's statistics could not be updated");
             }
             tx = self.write().await?;
         }

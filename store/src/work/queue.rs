@@ -249,7 +249,7 @@ impl Store {
                 tracing::warn!(
                     key = key.as_str(),
                     differences,
-                    "a recomputed result differs from the one before"
+                    "a recomputed result differs from the earlier one"
                 );
                 note_disagreement(&mut tx, lease.key.as_slice(), &differences, &earlier.provenance).await?;
             } else if earlier.disagrees {
@@ -401,7 +401,7 @@ impl Store {
         tx.commit().await?;
         for (state, crashes, owner, note) in &expired {
             self.metrics.lease_expired(state);
-            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
+            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease expired");
         }
         Ok(Some(expired.len() as u64))
     }

@@ -40,10 +40,7 @@ pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
                 let change = frequency_change(scenario, effect);
                 let neglects = scenario.effects.auto == AutoRule::Aggressive;
                 if decision.active && neglects && change < NEGLIGIBLE {
-                    (
-                        false,
-                        format!("left out as small: it changes frequencies by about {change:.0e} of them"),
-                    )
+                    (false, format!("omitted as small: relative change of frequencies about {change:.0e}"))
                 } else {
                     (decision.active, decision.reason.to_owned())
                 }
@@ -185,7 +182,7 @@ mod tests {
         let change = frequency_change(&scenario, Effect::Gyroscopic);
         assert!((change / 7.5e-5 - 1.0).abs() < 0.3, "{change:e}");
         assert!(!of(Effect::Gyroscopic).active);
-        assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
+        assert!(of(Effect::Gyroscopic).reason.contains("e-5"), "{:?}", of(Effect::Gyroscopic));
         assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
         // Fast flow has an effect.
         scenario.mud.as_mut().unwrap().flow_rate = 0.5;

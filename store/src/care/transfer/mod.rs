@@ -104,7 +104,8 @@ pub enum TransferError {
     NotEmpty(&'static str),
     /// Workers are at the old one.
     #[error(
-        "the store is in use: {workers} workers were heard of in the last {} s, and {leases} points are running; stop them first",
+        "the store is in use: {workers} workers sent a heartbeat in the last {} s, and {leases} points are running; \
+         stop them first",
         WORKER_SILENCE.as_secs()
     )]
     InUse {

@@ -91,8 +91,8 @@ impl DataArguments {
         exposed(paths)
     }
 
-    /// Passes it to a process of this program. Secrets are passed by its environment, which only this user can read; arguments
-    /// everybody can.
+    /// Passes it to a process of this program. Secrets are passed by its environment, which only this user can read; arguments are readable
+    /// by all users.
     pub(crate) fn hand_on(&self, command: &mut Command) {
         command.arg("--data").arg(&self.data);
         if let Some(database) = &self.database {

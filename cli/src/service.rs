@@ -239,8 +239,8 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
     })
 }
 
-/// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
-/// threshold that grows to 32 MiB are kept rather than given back, which for large answers adds up to several times what they take.
+/// Settings of glibc's allocator for a server. By default freed memory stays in up to eight arenas a core, and blocks below a threshold
+/// that grows to 32 MiB are not returned to the system: after large answers that is several times their size.
 const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 /// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: glibc reads them at the start only.

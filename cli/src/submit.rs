@@ -132,7 +132,7 @@ impl DesignArguments {
     }
 }
 
-/// Adds points to a sweep; prints how it stands then.
+/// Adds points to a sweep and prints its state.
 pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;

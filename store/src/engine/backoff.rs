@@ -7,8 +7,8 @@ use crate::error::Result;
 /// Time for which a process waits for its database: as long as for its object store.
 const RETRY_FOR: Duration = Duration::from_secs(60);
 
-/// Retries with backoff for a minute, as long as the database is busy or does not answer. Once the store is open, servers report such
-/// an error to their clients and workers retry by themselves: this is for what comes before that.
+/// Retries with backoff for a minute, as long as the database is busy or does not answer. It serves the opening of a store; later, servers
+/// report such an error to their clients, and workers retry by themselves.
 ///
 /// # Errors
 /// The error of the last attempt.

@@ -40,7 +40,7 @@ const SHORT: [&str; 8] = [
 ];
 
 #[test]
-fn log_has_lines_of_json_on_request_and_settings_that_mean_nothing_are_refused() {
+fn log_is_json_on_request_and_unknown_settings_are_refused() {
     let data = tempfile::tempdir().unwrap();
     let mut server = Command::new(BINARY);
     server.args(["serve", "--listen", "127.0.0.1:0", "--data"]).arg(data.path());
@@ -207,7 +207,7 @@ fn points_that_were_given_up_are_listed() {
 }
 
 #[test]
-fn completions_are_what_the_shell_understands() {
+fn completions_are_valid_shell_scripts() {
     let script = text("", &["completions", "bash"]);
     assert!(script.contains("submit") && script.contains("--mud-density"));
     let mut bash = Command::new("bash").arg("-n").stdin(Stdio::piped()).spawn().unwrap();
@@ -344,7 +344,7 @@ fn a_dry_run_is_a_table_and_a_submission_says_how_to_go_on() {
 }
 
 #[test]
-fn output_ends_quietly_where_nobody_reads_and_errors_are_messages() {
+fn output_ends_quietly_at_a_closed_pipe_and_errors_are_messages() {
     // The reading end is closed before the command starts.
     for arguments in [&["scenario", "paper-200m"][..], &["completions", "bash"]] {
         let (reader, writer) = std::io::pipe().unwrap();

@@ -11,7 +11,7 @@ use crate::servers::postgres::Server as Postgres;
 use crate::{BINARY, PATIENCE, completed, get, wait};
 
 #[test]
-fn a_full_disk_of_postgresql_is_told_and_nothing_is_lost_by_it() {
+fn a_full_disk_of_postgresql_is_reported_and_loses_nothing() {
     let (tables, log) = (Postgres::disk(96), Postgres::disk(40));
     let mut postgres = Postgres::start_on(&tables, &log);
     let (data, url) = (tempfile::tempdir().unwrap(), postgres.url());

@@ -198,7 +198,7 @@ pub(crate) fn last_claim(log: &str) -> Option<u64> {
 }
 
 #[test]
-fn the_log_says_who_submitted_and_who_cancelled() {
+fn the_log_names_callers_of_submissions_and_cancellations() {
     let data = tempfile::tempdir().unwrap();
     let (server, address) = serve(data.path(), None);
     let mut wanted = request(1.0, 1, 1);
@@ -417,7 +417,7 @@ fn clock_that_jumps_to_and_fro_while_a_sweep_runs_loses_nothing() {
 }
 
 #[test]
-fn point_of_a_dead_worker_does_not_wait_for_the_hour_by_which_the_clock_was_set_back() {
+fn point_of_a_dead_worker_does_not_wait_for_a_clock_set_back() {
     let (data, clock) = (tempfile::tempdir().unwrap(), Clock::new());
     let (_server, address) = clock.serve(data.path());
     let sweep = submit(&address, &request(6.0, 1, 1));
@@ -458,7 +458,7 @@ fn token_goes_by_the_clock_and_opens_nothing_when_it_has_expired() {
 }
 
 #[test]
-fn point_that_kills_its_workers_is_given_up_and_the_fleet_lives() {
+fn poison_point_is_given_up_and_the_fleet_survives() {
     let data = tempfile::tempdir().unwrap();
     // A worker may have 1.5 GB; a study keeps its runs in memory, and two million samples of ten nodes need 1.3 GB at once in
     // each of two: the allocation aborts.
@@ -529,7 +529,7 @@ fn leases_of_five_seconds_last_while_other_programs_take_all_cores() {
             if seen.last() != Some(&progress) {
                 seen.push(progress);
             }
-            assert!(point["attempts"].as_u64().unwrap() <= 1, "its lease ran out: {point}");
+            assert!(point["attempts"].as_u64().unwrap() <= 1, "its lease expired: {point}");
         }
         assert!(Instant::now() < deadline, "no heartbeats: {seen:?}");
         std::thread::sleep(Duration::from_millis(100));
@@ -537,7 +537,7 @@ fn leases_of_five_seconds_last_while_other_programs_take_all_cores() {
     let usual = rustix::process::getpriority_process(None).unwrap();
     let mut computing = 0;
     for worker in &workers {
-        assert!(!worker.log.lock().unwrap().contains("lease ran out"));
+        assert!(!worker.log.lock().unwrap().contains("lease expired"));
         let mut threads = niceness_of_threads(worker.process.0.id());
         if let Some(niceness) = threads.remove("compute") {
             assert_eq!(niceness, (usual + 10).min(19));
@@ -553,7 +553,7 @@ fn leases_of_five_seconds_last_while_other_programs_take_all_cores() {
 }
 
 #[test]
-fn full_disk_is_told_and_nothing_is_lost_by_it() {
+fn full_disk_is_reported_and_loses_nothing() {
     let disk = SmallDisk::new(48);
     // SQLite wants to see it under its own name.
     let inside = |arguments: &[&str]| {
@@ -607,7 +607,7 @@ fn full_disk_is_told_and_nothing_is_lost_by_it() {
 }
 
 #[test]
-fn damaged_result_is_told_and_computed_again() {
+fn damaged_result_is_reported_and_computed_again() {
     let data = tempfile::tempdir().unwrap();
     let (_server, address) = serve(data.path(), None);
     let working = worker(data.path());

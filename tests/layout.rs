@@ -146,7 +146,7 @@ fn simulation_knows_no_clock_files_threads_network_or_async() {
 const STOREYS: &[&str] = &["control", "math", "string", "force", "key", "solve", "validation"];
 
 #[test]
-fn storeys_of_the_simulation_use_only_those_below_them() {
+fn layers_of_the_simulation_use_only_those_below_them() {
     assert!(arrows_down("sim", STOREYS) > 100, "the arrows were not found");
 }
 
@@ -155,7 +155,7 @@ const ROOMS_OF_THE_STORE: &[&str] =
     &["blob_id", "error", "engine", "blob", "metrics", "store", "work", "sweep", "access", "care"];
 
 #[test]
-fn rooms_of_the_store_use_only_what_lies_below_them() {
+fn modules_of_the_store_use_only_those_below_them() {
     assert!(arrows_down("store", ROOMS_OF_THE_STORE) > 100, "the arrows were not found");
 }
 
@@ -211,7 +211,7 @@ fn no_module_imports_itself_by_way_of_others() {
 }
 
 #[test]
-fn imports_are_found_however_they_are_written() {
+fn imports_are_found_in_every_notation() {
     let folder = tempfile::tempdir().unwrap();
     let write = |path: &str, code: &str| {
         let path = folder.path().join(path);

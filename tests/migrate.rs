@@ -100,7 +100,7 @@ fn report(command: &mut Command) -> Value {
 }
 
 /// Answers of a server about a finished sweep: all of them, to the byte.
-fn told(server: &str, sweep: &str) -> Vec<Vec<u8>> {
+fn events(server: &str, sweep: &str) -> Vec<Vec<u8>> {
     let url = format!("{server}/v1/sweeps/{sweep}");
     let mut told: Vec<Vec<u8>> = ["?", "/points?limit=500", "/table?format=csv", "/events"]
         .map(|part| bytes(&format!("{url}{part}")))
@@ -131,7 +131,7 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
 
     let (mut local, local_server) = serve(laptop.path(), None);
     let (mut remote, remote_server) = site.serve();
-    assert!(told(&remote_server, &laptop.finished) == told(&local_server, &laptop.finished));
+    assert!(events(&remote_server, &laptop.finished) == events(&local_server, &laptop.finished));
     let list = |server: &str| get(&format!("{server}/v1/sweeps"));
     assert_eq!(list(&remote_server), list(&local_server));
     local.kill();
@@ -144,7 +144,7 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
     assert_eq!(wait(&remote_server, &laptop.queued, completed)["counts"]["succeeded"], 2);
     let busy = site.command(&["migrate"]).arg("--to-data").arg(laptop.path().join("busy")).output().unwrap();
     let reason = String::from_utf8_lossy(&busy.stderr).into_owned();
-    assert!(!busy.status.success() && reason.contains("1 workers were heard of"), "{reason}");
+    assert!(!busy.status.success() && reason.contains("1 workers sent a heartbeat"), "{reason}");
     worker.process.signal(Signal::TERM);
     worker.process.0.wait().unwrap();
 
@@ -157,13 +157,13 @@ fn a_laptops_store_moves_to_a_server_and_a_bucket_and_back() {
         let table = |server: &str| bytes(&format!("{server}/v1/sweeps/{sweep}/table?format=csv"));
         assert!(table(&home_server) == table(&remote_server));
     }
-    assert!(told(&home_server, &laptop.finished) == told(&remote_server, &laptop.finished));
+    assert!(events(&home_server, &laptop.finished) == events(&remote_server, &laptop.finished));
     assert_eq!(list(&home_server), list(&remote_server));
     remote.kill();
 }
 
 #[test]
-fn a_migration_that_is_killed_leaves_no_half_and_goes_on_where_it_was() {
+fn a_killed_migration_leaves_no_partial_store_and_resumes() {
     let (laptop, site) = (Laptop::new(), Site::new());
     let files = laptop.files();
     let database = site.postgres.url();
@@ -305,7 +305,7 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     // The service runs while its backup is made.
     std::os::unix::fs::symlink(laptop.path(), work.path().join("data")).unwrap();
     let (mut server, address) = serve(laptop.path(), None);
-    let before = told(&address, &laptop.finished);
+    let before = events(&address, &laptop.finished);
     let nothing = Command::new("true");
     run_recipe(&local_backup, work.path(), &nothing);
     server.kill();
@@ -313,14 +313,14 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     nothing_is_public();
     run_recipe(&local_restore, work.path(), &nothing);
     let (mut server, address) = serve(&work.path().join("data"), None);
-    assert!(told(&address, &laptop.finished) == before, "of the directory");
+    assert!(events(&address, &laptop.finished) == before, "of the directory");
     // With the write-ahead log of a server that runs.
     nothing_is_public();
     assert!(!server.log().contains("other users have access"));
     server.kill();
 
     let (mut server, address) = site.serve();
-    assert!(told(&address, &laptop.finished) == before);
+    assert!(events(&address, &laptop.finished) == before);
     run_recipe(&remote_backup, work.path(), &site.command(&[]));
     // Another place of the same service.
     let elsewhere = |command: &mut Command, variable: &str| {
@@ -346,5 +346,5 @@ fn the_backups_of_the_documents_bring_a_whole_store_back() {
     let mut server = site.command(&["serve", "--listen", "127.0.0.1:0"]);
     elsewhere(&mut server, "DRILLSWEEP_OBJECTS");
     let server = Logged::start(server.env("DRILLSWEEP_DATABASE", &restored));
-    assert!(told(&server.address(), &laptop.finished) == before, "of the server");
+    assert!(events(&server.address(), &laptop.finished) == before, "of the server");
 }

@@ -201,7 +201,7 @@ const FAULTS: [Fault; WORKER_KILLS] = {
 };
 
 #[test]
-fn everything_fails_in_its_turn_and_the_numbers_are_those_of_an_undisturbed_machine() {
+fn failures_of_every_part_do_not_change_the_numbers() {
     let request = request(9.0, 4, 4);
     let calm = tempfile::tempdir().unwrap();
     let mut undisturbed =
@@ -297,7 +297,7 @@ fn everything_fails_in_its_turn_and_the_numbers_are_those_of_an_undisturbed_mach
 }
 
 #[test]
-fn a_worker_that_was_cut_off_beyond_its_lease_changes_nothing_when_it_is_back() {
+fn a_worker_cut_off_beyond_its_lease_changes_nothing_afterwards() {
     let site = Site::new();
     let (_server, address) = site.serve();
     let sweep = submit(&address, &request(6.0, 1, 2));
@@ -329,7 +329,7 @@ fn a_worker_that_was_cut_off_beyond_its_lease_changes_nothing_when_it_is_back() 
 }
 
 #[test]
-fn machines_whose_clocks_differ_work_together_by_that_of_the_database() {
+fn machines_with_different_clocks_use_that_of_the_database() {
     /// Longer than everything here takes, and than leases; a service of S3 refuses requests that are 15 minutes off.
     const OFF: i64 = 600;
     let (site, ahead, behind) = (Site::new(), Clock::new(), Clock::new());
@@ -364,10 +364,10 @@ fn machines_whose_clocks_differ_work_together_by_that_of_the_database() {
     now(&ended["created"]);
     now(&ended["finished"]);
     for point in points(&address, &sweep) {
-        assert_eq!(point["attempts"], 1, "its lease ran out: {point}");
+        assert_eq!(point["attempts"], 1, "its lease expired: {point}");
     }
     for process in workers.iter().chain([&server]) {
-        assert!(!process.log().contains("lease ran out"));
+        assert!(!process.log().contains("lease expired"));
     }
     assert_eq!(checked(&mut site.command(&["check", "--json"])), (2, vec![]));
 }

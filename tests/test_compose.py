@@ -134,7 +134,7 @@ def test_services_are_fenced_in(profile: str, composed: Compose, secrets: Path) 
     assert ".cargo" not in (REPOSITORY / ".dockerignore").read_text()
 
 
-def test_only_what_stores_data_is_reached_by_its_clients_alone(composed: Compose) -> None:
+def test_stores_are_reachable_by_their_clients_alone(composed: Compose) -> None:
     configuration = composed("team")
     assert configuration["networks"]["storage"]["internal"]
     networks = {name: set(service["networks"]) for name, service in configuration["services"].items()}

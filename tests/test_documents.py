@@ -150,7 +150,9 @@ def test_transcripts_are_checked_with_and_without_a_service() -> None:
 
 
 @pytest.mark.parametrize("transcript", TRANSCRIPTS, ids=lambda transcript: transcript.place)
-def test_commands_print_what_is_shown(transcript: Transcript, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+def test_commands_print_their_transcripts(
+    transcript: Transcript, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
     steps = transcript.steps()
     environment = {"NO_COLOR": "1", "PATH": f"{Path(binary()).parent}:{os.environ['PATH']}"}
     if transcript.needs_service:

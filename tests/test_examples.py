@@ -94,7 +94,7 @@ def test_the_notebook_draws_the_papers_figures(server: str, tmp_path: Path, monk
     assert friction["flow_rate"][-1] < friction["mud_density"][-1]
 
 
-def test_the_scorecard_shows_what_the_runs_have(server: str, tmp_path: Path) -> None:
+def test_the_scorecard_shows_values_of_the_runs(server: str, tmp_path: Path) -> None:
     shortened("paper_search.py", tmp_path)
     printed = run("paper_scorecard.py", sys.executable, server, tmp_path, "--quick", "--accuracy", "draft")
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in printed.splitlines() if "[0.1" in line]

@@ -109,7 +109,7 @@ def test_pods_are_closed_and_secrets_are_elsewhere() -> None:
     assert worker == {"worker-password"}, "the tables' owner is not for workers"
 
 
-def test_what_ends_has_the_time_that_it_needs() -> None:
+def test_processes_have_the_time_to_end() -> None:
     assert pods()["server"]["terminationGracePeriodSeconds"] > DRAIN_SECONDS
     assert pods()["worker"]["terminationGracePeriodSeconds"] > UPLOAD_SECONDS
 

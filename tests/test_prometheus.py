@@ -78,7 +78,7 @@ def test_alerts_and_dashboard_use_metrics_that_there_are(metrics: str) -> None:
     assert len({panel["id"] for panel in panels}) == len(panels)
 
 
-def test_every_alert_says_what_to_do() -> None:
+def test_every_alert_has_instructions() -> None:
     described = LEVELS.read_text()
     for rule in rules():
         assert f"`{rule['alert']}`" in described, rule["alert"]

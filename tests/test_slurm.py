@@ -110,7 +110,7 @@ def test_points_outlast_the_time_of_a_job_and_end_with_the_same_numbers(
     assert ours.read_bytes() == theirs.read_bytes()
 
 
-def test_a_job_says_what_it_lacks() -> None:
+def test_a_job_reports_missing_settings() -> None:
     clean = {"PATH": os.environ["PATH"], "DRILLSWEEP_DATABASE": "here"}
     refused = subprocess.run(["bash", str(SCRIPT)], env=clean, capture_output=True, text=True, check=False)
     assert refused.returncode != 0

@@ -83,7 +83,7 @@ fn up_that_cannot_start_ends_with_the_reason_and_leaves_no_worker() {
 }
 
 #[test]
-fn up_that_loses_a_worker_for_good_ends_with_the_reason_and_leaves_no_other() {
+fn up_ends_with_the_reason_after_losing_a_worker_for_good() {
     let data = tempfile::tempdir().unwrap();
     // A program that is taken away while it runs.
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("drillsweep-{}", std::process::id()));
@@ -103,7 +103,7 @@ fn up_that_loses_a_worker_for_good_ends_with_the_reason_and_leaves_no_other() {
 }
 
 #[test]
-fn up_prints_where_its_page_and_its_data_are_once_it_listens() {
+fn up_prints_page_and_data_locations_once_it_listens() {
     let place = tempfile::tempdir().unwrap();
     let mut up = Command::new(BINARY);
     up.args(["up", "--workers", "1", "--listen", "0.0.0.0:0", "--data", "here"]).current_dir(place.path());
@@ -177,7 +177,7 @@ fn value(metrics: &str, name: &str) -> f64 {
 }
 
 #[test]
-fn server_and_workers_count_what_they_do() {
+fn server_and_workers_export_their_counters() {
     let place = tempfile::tempdir().unwrap();
     let free = || TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
     let (address, of_server, of_worker) = (free(), free(), free());

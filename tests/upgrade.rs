@@ -74,7 +74,7 @@ fn reach<T>(mut look: impl FnMut() -> Option<T>) -> T {
 }
 
 #[test]
-fn each_worker_computes_points_of_its_version_and_a_sweep_says_which_one_is_missing() {
+fn workers_compute_points_of_their_version_and_a_sweep_names_the_missing_one() {
     let service = Service::new();
     let server = Logged::start(&mut service.command(&["serve", "--listen", "127.0.0.1:0"]));
     let address = server.address();
@@ -94,7 +94,8 @@ fn each_worker_computes_points_of_its_version_and_a_sweep_says_which_one_is_miss
     watch.args(["watch", &after, "--server", &address]).stdin(Stdio::null());
     let watching = Logged::start(&mut watch);
     let missing = format!(
-        "queued points wait for a worker of physics version {PHYSICS_VERSION}: those heard of in the last 100 s compute version {EARLIER}"
+        "queued points wait for a worker of physics version {PHYSICS_VERSION}: workers with a heartbeat in the last \
+         100 s compute version {EARLIER}"
     );
     watching.wait_for(|log| log.contains(&missing).then_some(()));
     let shown = Command::new(BINARY).args(["show", &after, "--server", &address]).output().unwrap();

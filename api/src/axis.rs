@@ -171,8 +171,8 @@ impl TryFrom<AxisFields> for Axis {
             AxisFields { from: Some(from), to: Some(to), count: None, scale, .. } => {
                 Ok(Axis::Interval { from, to, scale: scale.unwrap_or_default() })
             }
-            AxisFields { from: Some(_), .. } => Err("a range needs `to` too".to_owned()),
-            AxisFields { to: Some(_), .. } => Err("a range needs `from` too".to_owned()),
+            AxisFields { from: Some(_), .. } => Err("a range also needs `to`".to_owned()),
+            AxisFields { to: Some(_), .. } => Err("a range also needs `from`".to_owned()),
             AxisFields { .. } => Err("an axis needs `values`, or `from`, `to` and `count`".to_owned()),
         }
     }
@@ -352,9 +352,9 @@ mod tests {
     }
 
     #[test]
-    fn the_message_names_what_is_missing_or_too_many() {
+    fn the_message_names_missing_and_excess_fields() {
         for (text, message) in [
-            (r#"{"from": 1, "count": 3}"#, "a range needs `to` too"),
+            (r#"{"from": 1, "count": 3}"#, "a range also needs `to`"),
             (r#"{}"#, "an axis needs `values`, or `from`, `to` and `count`"),
             (r#"{"values": [1], "count": 3}"#, "`values` excludes"),
             (r#"{"valeus": [1]}"#, "unknown field `valeus`"),

@@ -41,7 +41,7 @@ pub enum ProblemKind {
     TargetTooLong,
     /// The header fields are larger than the limit.
     HeaderTooLarge,
-    /// The body did not come in time.
+    /// The body was not received in time.
     RequestTimeout,
     /// None of the requested bytes exist.
     RangeNotSatisfiable,
@@ -154,8 +154,10 @@ impl ProblemKind {
             ProblemKind::BodyTooLarge => ("body-too-large", "The body is too large", 413),
             ProblemKind::TargetTooLong => ("target-too-long", "Path and query are too long", 414),
             ProblemKind::HeaderTooLarge => ("header-too-large", "The header fields are too large", 431),
-            ProblemKind::RequestTimeout => ("request-timeout", "The body did not come in time", 408),
-            ProblemKind::RangeNotSatisfiable => ("range-not-satisfiable", "No such bytes", 416),
+            ProblemKind::RequestTimeout => ("request-timeout", "The body was not received in time", 408),
+            ProblemKind::RangeNotSatisfiable => {
+                ("range-not-satisfiable", "The range is not satisfiable", 416)
+            }
             ProblemKind::NoSuchRoute => ("no-such-route", "No such route", 404),
             ProblemKind::MethodNotAllowed => ("method-not-allowed", "Method not allowed", 405),
             ProblemKind::NotFound => ("not-found", "Not found", 404),
@@ -164,8 +166,8 @@ impl ProblemKind {
             ProblemKind::NoResult => ("no-result", "The point has no result", 409),
             ProblemKind::NoSuchTable => ("no-such-table", "The run has no such table", 404),
             ProblemKind::Expired => ("expired", "The table has expired", 410),
-            ProblemKind::Damaged => ("damaged", "Storage has lost the table", 500),
-            ProblemKind::Recomputing => ("recomputing", "The table is computed again", 503),
+            ProblemKind::Damaged => ("damaged", "The stored table is missing or damaged", 500),
+            ProblemKind::Recomputing => ("recomputing", "The table is being recomputed", 503),
             ProblemKind::Conflict => ("conflict", "The sweep's state does not allow this", 409),
             ProblemKind::PreconditionFailed => {
                 ("precondition-failed", "The sweep was changed since it was read", 412)
@@ -373,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_of_a_problem_is_as_long_as_what_was_sent() {
+    fn texts_of_a_problem_are_shorter_than_the_request() {
         let error = |got: Value| FieldProblem {
             pointer: Some(format!("/set/{}", "k".repeat(5_000))),
             parameter: None,

@@ -265,7 +265,7 @@ pub struct SweepPatch {
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "bounded::new_tags")]
     #[schema(max_items = 20, value_type = Option<Vec<Tag>>)]
     pub tags: Option<BTreeSet<String>>,
-    /// True to keep the sweep, and all that belongs to it, whatever its age.
+    /// True to keep the sweep and its data regardless of age.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pinned: Option<bool>,
     /// Time from which the sweep may be deleted, once all its points are final and unless it is pinned; `null` means never.

@@ -41,7 +41,7 @@ pub struct Sweep {
     /// Time at which its last point, or the last reference run that verifies one, became final.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished: Option<Timestamp>,
-    /// True if it, and all that belongs to it, is kept whatever its age.
+    /// True if the sweep and its data are kept regardless of age.
     #[serde(default)]
     pub pinned: bool,
     /// Time from which it may be deleted, once all its points are final and unless it is pinned.
@@ -69,7 +69,7 @@ pub struct Sweep {
 pub struct WaitingFor {
     /// Version of the physics by which the points are computed.
     pub physics_version: i64,
-    /// Versions of the physics that the workers compute which were heard of in the last 100 s; none without workers.
+    /// Physics versions of the workers with a heartbeat in the last 100 s; none without workers.
     pub worker_physics_versions: Vec<i64>,
     /// The same in words.
     pub reason: String,
@@ -80,9 +80,11 @@ impl WaitingFor {
     pub fn new(physics_version: i64, worker_physics_versions: Vec<i64>) -> Self {
         let others: Vec<String> = worker_physics_versions.iter().map(i64::to_string).collect();
         let there = match others.as_slice() {
-            [] => "no worker has been heard of in the last 100 s".to_owned(),
-            [one] => format!("those heard of in the last 100 s compute version {one}"),
-            several => format!("those heard of in the last 100 s compute versions {}", several.join(", ")),
+            [] => "no worker has sent a heartbeat in the last 100 s".to_owned(),
+            [one] => format!("workers with a heartbeat in the last 100 s compute version {one}"),
+            several => {
+                format!("workers with a heartbeat in the last 100 s compute versions {}", several.join(", "))
+            }
         };
         let reason = format!("queued points wait for a worker of physics version {physics_version}: {there}");
         WaitingFor { physics_version, worker_physics_versions, reason }

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_are_added_one_by_one_are_verified_as_often_as_many_at_once() {
+    fn points_added_singly_are_verified_as_often_as_in_batches() {
         let mut verified = sample(0.05, 10, 0, 10).len();
         for total in 11..=1000 {
             verified += sample(0.05, total, verified, 1).len();

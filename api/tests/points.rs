@@ -18,7 +18,7 @@ fn refused(body: Value) -> Vec<(String, String)> {
 /// The limit of stability takes an equilibrium to find, so that only extreme points are looked at: here the least step is within it, and so is the
 /// first.
 #[test]
-fn a_step_beyond_stability_is_found_wherever_it_is_among_the_points() {
+fn a_step_beyond_stability_is_found_at_any_point() {
     for (steps, at) in [([2e-5, 1e-4, 1e-5], 1), ([2e-5, 1e-5, 1e-4], 2), ([1e-4, 2e-5, 1e-5], 0)] {
         let body = json!({"preset": "paper-200m", "set": {"accuracy": {"integrator": "rk4", "step": 1e-5}},
             "axes": {"accuracy.step": {"values": steps}}});
@@ -43,7 +43,7 @@ fn a_reference_that_cannot_run_a_later_point_is_found() {
     let found = refused(of(1500));
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0].0, "/verify");
-    assert!(found[0].1.starts_with("the reference cannot run this: mesh: "), "{found:?}");
+    assert!(found[0].1.starts_with("not valid at the accuracy `reference`: mesh: "), "{found:?}");
 }
 
 /// The sequence has 2^32 points.

@@ -3,10 +3,10 @@
 use drillsweep_api::cost::{CostReport, CostRow, Measure, step_text, three_digits};
 use drillsweep_scenario::{AccuracyPreset, Integrator};
 
-use crate::picture::{Drawing, Point, Series, WantedAccuracy, WorkPrecisionChart};
+use crate::picture::{Drawing, Point, RequestedAccuracy, Series, WorkPrecisionChart};
 
 /// The error that is drawn as a line across.
-const WANTED: f64 = 0.02;
+const REQUESTED: f64 = 0.02;
 
 /// Error against processor time per simulated second, or of runs that settle that of the whole run: a line of the named accuracies, and a line a method with a point a step. The
 /// reference's two methods stand with the error of each against the other.
@@ -58,7 +58,7 @@ fn chart(report: &CostReport, measure: Measure) -> WorkPrecisionChart {
             false => "CPU seconds per simulated second".to_owned(),
         },
         y_label: label(measure, report),
-        wanted: Some(WantedAccuracy { y: WANTED, label: "wanted: 2 %".to_owned() }),
+        requested: Some(RequestedAccuracy { y: REQUESTED, label: "requested: 2 %".to_owned() }),
         series: series.collect(),
     }
 }
@@ -90,7 +90,7 @@ fn series_name(row: &CostRow) -> String {
         _ if is_preset => PRESETS.to_owned(),
         (Some(_), _) => format!("{method}, adaptive"),
         (None, Integrator::Rk4) => method.to_owned(),
-        (None, _) => format!("{method}, {} sweeps", row.contact_sweeps),
+        (None, _) => format!("{method}, {} iterations", row.contact_sweeps),
     }
 }
 
@@ -203,14 +203,14 @@ mod tests {
     fn every_method_is_a_line_from_large_to_small_steps() {
         let chart = chart(&report(), Measure::OrbitSize);
         let names: Vec<_> = chart.series.iter().map(|series| series.name.as_str()).collect();
-        assert_eq!(names, ["RK4", "ESDIRK4(3)6L, 30 sweeps", PRESETS, "ESDIRK4(3)6L, 2 sweeps"]);
+        assert_eq!(names, ["RK4", "ESDIRK4(3)6L, 30 iterations", PRESETS, "ESDIRK4(3)6L, 2 iterations"]);
         let points = |series: usize| -> Vec<_> {
             chart.series[series].points.iter().map(|point| (point.x, point.y, point.label.as_str())).collect()
         };
         assert_eq!(points(0), [(1.0, 0.0, "62.5 µs"), (4.2, 5e-4, "50 µs")], "a failed run has no place");
         assert_eq!(points(2), [(0.4, 0.4, "draft")]);
         assert_eq!(points(3), [(0.8, 4e-3, "0.5 ms")]);
-        assert_eq!(chart.wanted.map(|wanted| wanted.y), Some(0.02));
+        assert_eq!(chart.requested.map(|requested| requested.y), Some(0.02));
         assert_eq!(chart.title, "Cost of accuracy: runs of paper-200m over 2 s");
         assert_eq!(chart.y_label, "relative error of orbit size over [1.333, 2) s");
     }

@@ -6,7 +6,7 @@ use drillsweep_table::Table;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChartError {
     /// No column was chosen.
-    #[error("a picture needs the column that it shows; there are {}", .columns.join(", "))]
+    #[error("a picture needs a column; there are {}", .columns.join(", "))]
     NoField {
         /// Numeric columns of the table that are no parameters.
         columns: Vec<String>,

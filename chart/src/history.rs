@@ -208,7 +208,7 @@ mod tests {
     const ONCE_A_SECOND: f64 = std::f64::consts::TAU;
 
     #[test]
-    fn a_history_of_a_string_that_twists_shows_rotation_speed_and_torque_of_its_lowest_node() {
+    fn history_of_a_twisting_string_shows_rotation_speed_and_torque_of_the_bit() {
         let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
         let picture = |table: &Table| history(table, None, &places, None, "").unwrap();
         let still = picture(&twisting(0.0, -1e3));
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn rotation_is_shown_at_the_bit_or_it_is_told_that_it_is_not() {
+    fn rotation_of_the_bit_is_shown_or_its_absence_noted() {
         let picture = |node, snapshots, table: &Table| {
             let bit = Bit { node, measured_depth: 201.5, snapshots };
             history(table, None, &[], Some(&bit), "").unwrap()

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn legends_say_where_a_node_is_and_which_way_it_moves() {
+    fn legends_show_the_place_of_a_node_and_its_direction() {
         let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
         let label = |name, low_side: Option<f64>| at_place(name, &place(low_side.map(f64::to_radians)));
         // Seen down the hole with the low side down, a turn from u to v is clockwise: from down to the left.

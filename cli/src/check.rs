@@ -63,10 +63,12 @@ pub(crate) fn check(arguments: &CheckArguments) -> anyhow::Result<()> {
             print(&format!("warning: {warning}"));
         }
         if let Some(RepairReport { queued, under_way, other_numbers }) = repair {
-            print(&format!("{queued} results are computed again, {under_way} were on their way already"));
+            print(&format!(
+                "{queued} results are queued for recomputation, {under_way} were queued or running already"
+            ));
             if other_numbers > 0 {
                 print(&format!(
-                    "{other_numbers} results are of another physics version than {PHYSICS_VERSION}, and cannot be computed again"
+                    "{other_numbers} results are of another physics version than {PHYSICS_VERSION} and cannot be recomputed"
                 ));
             }
         }

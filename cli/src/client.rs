@@ -143,7 +143,7 @@ impl Client {
                 let shown = several.iter().take(10);
                 let lines: Vec<_> = shown.map(|sweep| format!("{} of {}", sweep.id, sweep.created)).collect();
                 bail!(
-                    "{} sweeps are meant by {text:?}; give an identifier, such as\n  {}",
+                    "{} sweeps match {text:?}; give an identifier, such as\n  {}",
                     several.len(),
                     lines.join("\n  ")
                 )

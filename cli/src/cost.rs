@@ -169,7 +169,7 @@ fn announce(scenarios: &[Scenario]) -> anyhow::Result<()> {
         let (cpu_time, adaptive) = study_cpu_time(scenario, &speed)?;
         let others = match adaptive {
             0 => String::new(),
-            lines => format!(", without the {lines} of its lines whose steps adapt themselves"),
+            lines => format!(", excluding its {lines} lines with adaptive steps"),
         };
         tracing::info!(
             "{}: {} s of simulated time, about {cpu_time:.0} s of processor time{others}",
@@ -230,7 +230,7 @@ fn parse_share(text: &str) -> Result<f64, String> {
     let share = number.trim().parse::<f64>().ok().map(|number| number / scale);
     share
         .filter(|share| *share > 0.0 && *share < 1.0)
-        .ok_or_else(|| "must be more than nothing and less than the whole, such as 5% or 0.05".to_owned())
+        .ok_or_else(|| "must be above 0 and below 1 (100%), such as 5% or 0.05".to_owned())
 }
 
 fn json_value(text: &str) -> Result<Value, serde_json::Error> {

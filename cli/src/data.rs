@@ -91,8 +91,8 @@ impl DataArguments {
         exposed(paths)
     }
 
-    /// Passes it to a process of this program. Secrets are passed by its environment, which only this user can read; arguments
-    /// everybody can.
+    /// Passes it to a process of this program. Secrets are passed by its environment, which only this user can read; arguments are readable
+    /// by all users.
     pub(crate) fn hand_on(&self, command: &mut Command) {
         command.arg("--data").arg(&self.data);
         if let Some(database) = &self.database {
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_credentials_is_said_without_them() {
+    fn errors_about_credentials_do_not_contain_them() {
         for (text, reason) in [
             ("", "the profile [default] has no aws_access_key_id"),
             (

@@ -1,4 +1,4 @@
-//! Downloads of stored tables: in stretches, some at once, verified, and resumed after an interrupted download.
+//! Downloads of stored tables: in chunks, some at once, verified, and resumed after an interrupted download.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write as _;
@@ -17,7 +17,7 @@ use reqwest::{Method, StatusCode};
 use crate::client::{Answer, Client, PATIENCE, RETRY_PAUSE, is_worth_another_try};
 
 /// Bytes of a request.
-const STRETCH: u64 = 4 << 20;
+const CHUNK: u64 = 4 << 20;
 
 /// Requests at once: a line with a long round trip is filled, and a server serves others.
 const REQUESTS: usize = 4;
@@ -33,14 +33,14 @@ impl Client {
         entry: &ArtifactEntry,
         file: &Path,
     ) -> anyhow::Result<Result<(), String>> {
-        self.in_stretches(entry, file, STRETCH)
+        self.in_chunks(entry, file, CHUNK)
     }
 
-    fn in_stretches(
+    fn in_chunks(
         &self,
         entry: &ArtifactEntry,
         file: &Path,
-        stretch: u64,
+        chunk: u64,
     ) -> anyhow::Result<Result<(), String>> {
         let part = file.with_added_extension("part");
         let unwritten = || format!("cannot write {}", part.display());
@@ -51,8 +51,8 @@ impl Client {
         }
         let start = sink.metadata().with_context(unwritten)?.len();
         let ranges = (start..entry.bytes)
-            .step_by(usize::try_from(stretch)?)
-            .map(|from| from..entry.bytes.min(from + stretch));
+            .step_by(usize::try_from(chunk)?)
+            .map(|from| from..entry.bytes.min(from + chunk));
         let mut pieces =
             futures::stream::iter(ranges.map(|range| self.range(entry, range))).buffered(REQUESTS);
         let received = self.block_on(async {
@@ -70,7 +70,7 @@ impl Client {
         drop(sink);
         if hash(&part)? != entry.hash {
             std::fs::remove_file(&part).with_context(unwritten)?;
-            return Ok(Err("its bytes are not those that the server has; fetch again".to_owned()));
+            return Ok(Err("the file differs from that of the server; fetch again".to_owned()));
         }
         std::fs::rename(&part, file).with_context(|| format!("cannot write {}", file.display()))?;
         Ok(Ok(()))
@@ -114,7 +114,7 @@ impl Client {
                 answer => answer,
             };
             if status != StatusCode::PARTIAL_CONTENT || body.len() as u64 != range.end - range.start {
-                return Ok(Err("it was replaced while it was read; fetch again".to_owned()));
+                return Ok(Err("it was replaced during the download; fetch again".to_owned()));
             }
             return Ok(Ok(body));
         }
@@ -239,7 +239,7 @@ mod tests {
             5 => Fate::BreakOff,
             _ => Fate::Answer,
         });
-        server.client().in_stretches(&entry(), &file, 8_000).unwrap().unwrap();
+        server.client().in_chunks(&entry(), &file, 8_000).unwrap().unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), content());
         let most = server.most_at_once.load(Ordering::SeqCst);
         assert!((2..=REQUESTS).contains(&most), "{most} requests at once");
@@ -247,14 +247,14 @@ mod tests {
     }
 
     #[test]
-    fn a_download_goes_on_where_it_ended_if_that_was_of_the_same_table() {
+    fn a_download_resumes_if_the_table_is_unchanged() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join("history.parquet");
         let part = file.with_added_extension("part");
         let read = |before: &[u8]| {
             std::fs::write(&part, before).unwrap();
             let server = Server::start(|_| Fate::Answer);
-            server.client().in_stretches(&entry(), &file, 8_000).unwrap().unwrap();
+            server.client().in_chunks(&entry(), &file, 8_000).unwrap().unwrap();
             assert_eq!(std::fs::read(&file).unwrap(), content());
             let served = server.served.lock().unwrap();
             served.iter().map(|range| range.end - range.start).sum::<u64>()
@@ -272,15 +272,15 @@ mod tests {
         let file = directory.path().join("history.parquet");
         let part = file.with_added_extension("part");
         let replaced = Server::start(|number| if number == 3 { Fate::Replaced } else { Fate::Answer });
-        let problem = replaced.client().in_stretches(&entry(), &file, 8_000).unwrap().unwrap_err();
+        let problem = replaced.client().in_chunks(&entry(), &file, 8_000).unwrap().unwrap_err();
         assert!(problem.contains("replaced"), "{problem}");
         // Its end is that of the table, its beginning is not.
         let mut damaged = content();
         damaged[10] ^= 1;
         std::fs::write(&part, damaged).unwrap();
         let server = Server::start(|_| Fate::Answer);
-        let problem = server.client().in_stretches(&entry(), &file, 8_000).unwrap().unwrap_err();
-        assert!(problem.contains("not those"), "{problem}");
+        let problem = server.client().in_chunks(&entry(), &file, 8_000).unwrap().unwrap_err();
+        assert!(problem.contains("differs from that of the server"), "{problem}");
         assert!(!file.exists() && !part.exists());
     }
 }

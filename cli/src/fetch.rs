@@ -68,9 +68,8 @@ impl Format {
 }
 
 /// Writes `sweep.json` as the server describes the sweep, `table` with a row a point, and a folder a point with its tables and full
-/// spectra. A file that the server cannot give
-/// does not keep the others back: `missing.json` lists missing files with the reasons, and the command fails. Files of points that have
-/// not changed since they were fetched are left as they are, so that a fetch that was interrupted goes on.
+/// spectra. A file that the server cannot give does not stop the others: `missing.json` lists missing files with the reasons, and the
+/// command fails. Files of points that have not changed since the last fetch are kept, so an interrupted fetch resumes.
 pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
     let id = &path_segment(&client.sweep_id(&arguments.sweep)?);

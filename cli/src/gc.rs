@@ -1,4 +1,4 @@
-//! Garbage collection: expired data, and blobs that no row names.
+//! Garbage collection: expired data, and unreferenced blobs.
 
 use std::time::Duration;
 
@@ -38,7 +38,7 @@ pub(crate) struct RetentionArguments {
     /// Days for which events are kept.
     #[arg(long, value_name = "DAYS", default_value_t = 30)]
     events_days: u32,
-    /// Hours for which a blob that no row names is kept: longer than a point may take.
+    /// Hours for which an unreferenced blob is kept: longer than a point may take.
     #[arg(long, value_name = "HOURS", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..))]
     grace_hours: u32,
 }

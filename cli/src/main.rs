@@ -101,7 +101,7 @@ enum Command {
     },
     /// Delete expired data, and blobs without references.
     Gc(gc::GcArguments),
-    /// Make, list and revoke tokens.
+    /// Create, list and revoke tokens.
     #[command(subcommand)]
     Token(token::TokenCommand),
     /// Verify a data directory in full and report all problems.

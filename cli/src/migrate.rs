@@ -100,13 +100,13 @@ pub(crate) fn migrate(arguments: &MigrateArguments) -> anyhow::Result<()> {
     let report = runtime.block_on(transfer(&source, &target, source_use, &mut show));
     bar.finish_and_clear();
     let report = report.with_context(|| {
-        format!("the store was not carried over to {} and {}", target.database, target.objects)
+        format!("the store was not migrated to {} and {}", target.database, target.objects)
     })?;
     print(&if arguments.json { as_json(&report)? } else { as_text(&report, &target) });
     ensure!(
         report.lost.is_empty(),
-        "{} tables or checkpoints were lost before, and are not in the new store either; `drillsweep check --repair` there computes them \
-         again",
+        "{} tables or checkpoints were missing from the source and are missing from the target; `drillsweep check \
+         --repair` on the target recomputes them",
         report.lost.len()
     );
     Ok(())
@@ -117,17 +117,17 @@ fn as_text(report: &TransferReport, target: &StoreConfig) -> String {
     let copied = report.blobs - report.blobs_present - report.lost.len() as u64;
     let mut lines = vec![
         format!(
-            "{rows} rows of {} tables were carried over to {}, and compared",
+            "{rows} rows of {} tables were copied to {} and compared",
             report.rows.len(),
             target.database
         ),
         format!(
-            "{copied} blobs of {} bytes were copied to {}, {} were there",
+            "{copied} blobs of {} bytes were copied to {}, {} existed already",
             report.bytes_copied, target.objects, report.blobs_present
         ),
     ];
     if report.released > 0 {
-        lines.push(format!("{} points were running, and are queued there", report.released));
+        lines.push(format!("{} running points are queued in the target", report.released));
     }
     lines.extend(report.lost.iter().map(|lost| format!("  {lost}")));
     lines.join("\n")

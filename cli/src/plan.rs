@@ -79,7 +79,7 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         let time = study.cpu_time.unwrap_or(0.0);
         let others = match study.lines_not_known {
             0 => String::new(),
-            lines => format!(", without the {lines} of its lines whose steps adapt themselves"),
+            lines => format!(", excluding its {lines} lines with adaptive steps"),
         };
         writeln!(
             text,

@@ -23,8 +23,8 @@ fn supports(leaf_1_ecx: u32, leaf_7_ebx: u32) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "this processor has no {}, which the program was built for; RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release makes \
-         one that does without, to the same results at a twelfth of the speed",
+        "this processor has no {}, which this build requires; RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build \
+         --release builds a portable version with the same results at a twelfth of the speed",
         missing.join(" and no ")
     ))
 }
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn processors_are_refused_by_what_they_lack() {
+    fn processors_are_refused_by_their_missing_features() {
         assert_eq!(supports(1 << 12, 1 << 5), Ok(()));
         assert!(supports(!(1 << 12), !0).unwrap_err().starts_with("this processor has no FMA, "));
         assert!(supports(!0, !(1 << 5)).unwrap_err().starts_with("this processor has no AVX2, "));
@@ -42,7 +42,7 @@ mod tests {
     }
 
     #[test]
-    fn what_runs_this_test_is_accepted() {
+    fn the_processor_of_this_test_is_accepted() {
         assert_eq!(check(), Ok(()));
     }
 }

@@ -239,8 +239,8 @@ pub(crate) fn worker(arguments: &WorkerArguments) -> anyhow::Result<()> {
     })
 }
 
-/// Settings of glibc's allocator for a server. By its own ones what a thread has freed is kept in up to eight arenas a core, and blocks below a
-/// threshold that grows to 32 MiB are kept rather than given back, which for large answers adds up to several times what they take.
+/// Settings of glibc's allocator for a server. By default freed memory stays in up to eight arenas a core, and blocks below a threshold
+/// that grows to 32 MiB are not returned to the system: after large answers that is several times their size.
 const ALLOCATOR: [(&str, &str); 2] = [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "1048576")];
 
 /// Starts this program again in the same process with those settings of the [`ALLOCATOR`] that the environment lacks: glibc reads them at the start only.
@@ -373,7 +373,7 @@ impl Service {
             drillsweep_server::serve(self.listeners, self.store.clone(), self.config, stopped(stop)).await;
         // A request that was cut off may hold a connection; the next start folds the write-ahead log in.
         if tokio::time::timeout(LAST_GRACE, self.store.close()).await.is_err() {
-            tracing::warn!("the database is left without closing it");
+            tracing::warn!("the database was not closed in time");
         }
         Ok(served?)
     }

@@ -234,7 +234,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             writeln!(text, "{starts}")?;
         }
         if let Some(time) = computed.histories_part_at {
-            writeln!(text, "the runs part at {time:.2} s: after that only statistics are meaningful")?;
+            writeln!(text, "the runs part at {time:.2} s: after that only statistics are comparable")?;
         }
         for warning in &computed.warnings {
             writeln!(text, "warning: {warning}")?;
@@ -255,7 +255,7 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             1e3 * run.shortest_step,
             1e3 * run.longest_step,
             transient.resolved_hz,
-            transient.capture_count
+            transient.slip_to_stick_count
         )?;
         let simulated = transient.simulated_time;
         writeln!(

@@ -132,7 +132,7 @@ impl DesignArguments {
     }
 }
 
-/// Adds points to a sweep; prints how it stands then.
+/// Adds points to a sweep and prints its state.
 pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
     let id = client.sweep_id(&arguments.sweep)?;
@@ -277,7 +277,7 @@ impl DryRun {
         let rows: Vec<Vec<String>> = self.points.iter().take(POINTS_SHOWN).map(row).collect();
         let _ = write!(text, "\n{}", columns(&header, &rows, |_| Alignment::Right));
         if self.points.len() > POINTS_SHOWN {
-            let _ = write!(text, "\n... and {} more; --json has all", self.points.len() - POINTS_SHOWN);
+            let _ = write!(text, "\n... and {} more; --json lists all", self.points.len() - POINTS_SHOWN);
         }
         for warning in &self.warnings {
             let _ = write!(text, "\nwarning: {warning}");

@@ -277,7 +277,8 @@ pub(crate) fn delete(arguments: &DeleteArguments) -> anyhow::Result<()> {
 fn deletion_text(id: &str, deletion: &SweepDeletion) -> String {
     let verb = if deletion.dry_run { "would be deleted" } else { "deleted" };
     format!(
-        "{verb}: {id} with {} points; {} results of {:.1} MB belong to no other sweep, and are deleted by the next collection",
+        "{verb}: {id} with {} points; {} results of {:.1} MB belong to no other sweep and are deleted by the next \
+         garbage collection",
         deletion.points,
         deletion.results,
         deletion.bytes as f64 * 1e-6
@@ -313,7 +314,7 @@ struct Changes {
     /// Remove all tags.
     #[arg(long, conflicts_with = "tags")]
     no_tags: bool,
-    /// Keep the sweep and all that belongs to it, whatever its age.
+    /// Keep the sweep and its data regardless of age.
     #[arg(long)]
     pin: bool,
     /// Remove the pin: the sweep expires like others.
@@ -665,15 +666,15 @@ mod tests {
         assert_eq!(
             waiting(&[9, 10]),
             "a running: 2 points, 2 queued\n\
-             queued points wait for a worker of physics version 11: those heard of in the last 100 s compute versions 9, 10"
+             queued points wait for a worker of physics version 11: workers with a heartbeat in the last 100 s compute versions 9, 10"
         );
         assert!(
-            waiting(&[]).ends_with("of physics version 11: no worker has been heard of in the last 100 s")
+            waiting(&[]).ends_with("of physics version 11: no worker has sent a heartbeat in the last 100 s")
         );
     }
 
     #[test]
-    fn a_second_line_says_what_verifying_has_shown() {
+    fn a_second_line_shows_the_verification() {
         let counts = PointCounts { total: 2, running: 1, succeeded: 1, ..PointCounts::default() };
         let verification = SweepVerification { counts, worst: None, warnings: Vec::new() };
         assert_eq!(verification_line(&verification), "verified by the reference: 1 of 2, 1 running");

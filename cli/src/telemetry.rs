@@ -21,7 +21,7 @@ const ENDPOINT: &str = "OTEL_EXPORTER_OTLP_ENDPOINT";
 /// Timeout of a collector.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Spans that are exported, whatever the log shows: this program's own.
+/// Spans to export, independent of the log's level: those of this program.
 const SPANS: (&str, Level) = ("drillsweep", Level::INFO);
 
 /// The way to the collector. Dropped, it sends the rest.

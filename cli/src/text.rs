@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_terminal_shows_what_it_would_obey() {
+    fn control_characters_are_shown_and_not_obeyed() {
         assert_eq!(visible("a\tb\né"), "a\tb\né");
         let hostile = "\u{1b}]0;owned\u{7}\u{9b}2J";
         assert_eq!(visible(hostile), "\\u001b]0;owned\\u0007\\u009b2J");
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cause_is_told_once() {
+    fn a_cause_is_printed_once() {
         let denied = || std::io::Error::from(std::io::ErrorKind::PermissionDenied);
         let error = drillsweep_store::StoreError::Directory { path: "data".to_owned(), source: denied() };
         assert_eq!(chain(&error.into()), "data: permission denied");

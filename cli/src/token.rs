@@ -15,7 +15,7 @@ use crate::print;
 
 #[derive(Subcommand)]
 pub(crate) enum TokenCommand {
-    /// Make a token and print it. It is shown only once; the database keeps its hash.
+    /// Create a token and print it. It is shown only once; the database keeps its hash.
     Create(CreateArguments),
     /// List the tokens, without their texts.
     List {
@@ -58,7 +58,7 @@ enum Scope {
     Read,
     /// Submitting sweeps, and changing one's own.
     Submit,
-    /// Changing anybody's sweeps, and submitting in anybody's name.
+    /// Changing sweeps of any owner, and submitting for any owner.
     Admin,
 }
 
@@ -116,7 +116,7 @@ async fn create(arguments: &CreateArguments) -> anyhow::Result<()> {
     store.create_token(&token).await?;
     store.close().await;
     print(secret.expose());
-    tracing::info!(id = secret.id(), owner, scope = scope.as_str(), "token made; it is not shown again");
+    tracing::info!(id = secret.id(), owner, scope = scope.as_str(), "token created; it is shown only once");
     Ok(())
 }
 
@@ -146,7 +146,7 @@ async fn revoke(data: &DataArguments, id: &str) -> anyhow::Result<()> {
     let store = Store::open(&data.existing_store(Role::Server)?).await?;
     let found = store.revoke_token(id).await?;
     store.close().await;
-    anyhow::ensure!(found, "there is no token {id}; `drillsweep token list` shows those there are");
+    anyhow::ensure!(found, "there is no token {id}; `drillsweep token list` shows all tokens");
     tracing::info!(id, "token revoked");
     Ok(())
 }

@@ -174,7 +174,7 @@ quantities! {
     /// Largest normal force of the wall.
     LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest normal force";
     /// Number of slip-to-stick transitions of the node; in a summary of all nodes together.
-    CAPTURE_COUNT: "capture_count", "", -, "capture count";
+    SLIP_TO_STICK_COUNT: "capture_count", "", -, "slip-to-stick transitions";
     /// Time that the node stuck.
     STICK_TIME: "stick_time", "", TIME, "stick time";
 
@@ -504,7 +504,7 @@ quantities! {
     /// Parts that a recording interval is cut into.
     STEP_SUBDIVISIONS: "step_subdivisions", "", -, "step subdivisions";
     /// Contact iterations of a solve.
-    CONTACT_SWEEPS: "contact_sweeps", "", -, "contact sweeps";
+    CONTACT_ITERATIONS: "contact_sweeps", "", -, "contact iterations";
     /// Number of elements.
     ELEMENTS: "elements", "", -, "elements";
     /// Factor on the scenario's element lengths.

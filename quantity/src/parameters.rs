@@ -128,7 +128,7 @@ pub(super) static ALL: &[Quantity] = &[
     field("accuracy.statistics", "", Some(&units::RATIO), "tolerance of statistics"),
     field("accuracy.trajectory", "", Some(&units::RATIO), "tolerance of the history"),
     field("accuracy.step", "h", Some(&units::TIME), "time step"),
-    field("accuracy.contact_sweeps", "", None, "contact sweeps"),
+    field("accuracy.contact_sweeps", "", None, "contact iterations"),
     field("accuracy.tolerance", "", Some(&units::RATIO), "tolerance"),
     field("accuracy.spectral_radius", "rho_inf", Some(&units::RATIO), "spectral radius"),
     // A cost study.
@@ -140,7 +140,7 @@ pub(super) static ALL: &[Quantity] = &[
     field("cost_study.reference.size_agreement", "", Some(&units::RATIO), "agreement of sizes"),
     field("cost_study.reference.deviation_agreement", "", Some(&units::RATIO), "agreement of deviations"),
     field("cost_study.reference.methods.step", "h", Some(&units::TIME), "step of a reference"),
-    field("cost_study.reference.methods.contact_sweeps", "", None, "contact sweeps of a reference"),
+    field("cost_study.reference.methods.contact_sweeps", "", None, "contact iterations of a reference"),
     field("cost_study.reference.methods.tolerance", "", Some(&units::RATIO), "tolerance of a reference"),
     field(
         "cost_study.reference.methods.spectral_radius",
@@ -149,7 +149,7 @@ pub(super) static ALL: &[Quantity] = &[
         "spectral radius of a reference",
     ),
     field("cost_study.methods.steps", "h", Some(&units::TIME), "steps of a method"),
-    field("cost_study.methods.contact_sweeps", "", None, "contact sweeps of a method"),
+    field("cost_study.methods.contact_sweeps", "", None, "contact iterations of a method"),
     field("cost_study.methods.tolerance", "", Some(&units::RATIO), "tolerance of a method"),
 ];
 

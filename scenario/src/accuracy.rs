@@ -233,9 +233,9 @@ pub struct TimeStepping {
     /// would diverge; `rk4` is refused beyond its stability limit. Below 1e-4 s implicit methods no longer damp the torsion of
     /// single elements, which velocity-weakening friction feeds unless `damping.stiffness_proportional` is above 0.
     pub step: f64,
-    /// Contact iterations a solve, 2 to 1000, 2 unless given (implicit methods). Two are a fixed number; more are a limit on sweeps
-    /// that end once they have converged (1e-9 m, and 1e-6 of a friction coefficient). Usual 2, or 30 for a reference: with fixed
-    /// steps too few leave contact forces that do not fit the motion, which the result's sweep monitor shows.
+    /// Contact iterations a solve, 2 to 1000, 2 unless given (implicit methods). Two are a fixed number; more are a limit on iterations
+    /// that end once they have converged (1e-9 m, and 1e-6 of a friction coefficient). Usual 2, or 30 for a reference: with a fixed
+    /// step too few leave contact forces inconsistent with the motion, counted as `loose_solves` in the result's provenance.
     #[serde(default = "two")]
     pub contact_sweeps: u32,
     /// Adapts the step; absent means a fixed step, which `generalized_alpha` always has. For `esdirk4` the relative error that

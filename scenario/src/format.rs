@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_fields_are_refused_where_they_stand() {
+    fn unknown_fields_are_refused_at_their_path() {
         let text = paper().to_toml().replace("flow_rate", "flowrate");
         let problem = Scenario::from_toml(&text).unwrap_err();
         assert_eq!(problem.path, "mud.flowrate");
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_types_say_what_was_expected() {
+    fn wrong_types_name_the_expected_one() {
         let json = paper().to_json().replace("\"count\": 9", "\"count\": -9");
         let problem = Scenario::from_json(&json).unwrap_err();
         assert_eq!(problem.path, "string.sections[1].count");

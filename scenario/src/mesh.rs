@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_factor_stays_whatever_the_accuracy() {
+    fn a_factor_does_not_depend_on_the_accuracy() {
         let mut scenario = preset("paper-200m").unwrap();
         let factors = AccuracyPreset::ALL.map(|accuracy| {
             scenario.accuracy = Accuracy::Preset(accuracy);

@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_not_found() {
+    fn a_path_to_no_number_is_not_found() {
         let mut scenario = preset("paper-200m").unwrap();
         for path in [
             "",

@@ -106,19 +106,19 @@ mod tests {
     }
 
     #[test]
-    fn closed_scenes_have_the_damped_cases_damping_run_and_window() {
+    fn closed_presets_have_the_damped_presets_damping_run_and_window() {
         let damped = preset("paper-200m-damped").unwrap();
         let closed: Vec<_> = PRESETS.iter().filter(|(name, _)| name.starts_with("closed/")).collect();
         assert_eq!(closed.len(), 4);
         for (name, _) in closed {
-            let scene = preset(name).unwrap();
-            assert_eq!(scene.damping, damped.damping, "{name}");
+            let closed = preset(name).unwrap();
+            assert_eq!(closed.damping, damped.damping, "{name}");
             // The motion of the string of 1,000 m grows slowly into stick-slip.
             let longest = if *name == "closed/string-1000m" { 600.0 } else { damped.duration };
-            assert_eq!((scene.duration, scene.settles()), (longest, true), "{name}");
-            assert_eq!(scene.spectrum_windows(), None, "{name}");
-            assert_eq!((&scene.operation, &scene.contact), (&damped.operation, &damped.contact), "{name}");
-            assert_eq!(scene.recording.nodes.len(), 3, "{name}");
+            assert_eq!((closed.duration, closed.settles()), (longest, true), "{name}");
+            assert_eq!(closed.spectrum_windows(), None, "{name}");
+            assert_eq!((&closed.operation, &closed.contact), (&damped.operation, &damped.contact), "{name}");
+            assert_eq!(closed.recording.nodes.len(), 3, "{name}");
         }
     }
 

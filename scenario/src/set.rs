@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn snapshots_are_asked_for_by_their_rate() {
+    fn snapshots_are_requested_by_their_rate() {
         let asked = paper().with("recording.snapshots.rate_hz", json!(25)).unwrap();
         assert_eq!(asked, paper().with("recording.snapshots", json!({"rate_hz": 25})).unwrap());
         let window = json!({"from": 1, "to": 2});
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_types_say_what_was_expected() {
+    fn wrong_types_name_the_expected_one() {
         let problem = paper().with("mud.flow_rate", json!("fast")).unwrap_err();
         assert_eq!(problem.path, "mud.flow_rate");
         assert_eq!(problem.to_string(), "mud.flow_rate: must be a number (got \"fast\")");

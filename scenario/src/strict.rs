@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn what_serde_writes_is_read() {
+    fn output_of_serde_is_read() {
         let inner = |form: Option<Form>| Inner { depth: 0.1, form: form.map(Box::new) };
         for form in [
             Form::Plain,

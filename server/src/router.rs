@@ -32,7 +32,7 @@ pub fn router(store: Store, config: Config, stopping: watch::Receiver<bool>) -> 
 
 pub(crate) fn routes(app: &App) -> Router {
     let routes = Router::from(for_programs())
-        .merge(for_people())
+        .merge(document_pages())
         .fallback(no_such_route)
         .method_not_allowed_fallback(method_not_allowed)
         .with_state(app.clone());
@@ -89,7 +89,7 @@ fn for_programs() -> OpenApiRouter<App> {
 }
 
 /// Pages and their files, which are not in the OpenAPI document.
-fn for_people() -> Router<App> {
+fn document_pages() -> Router<App> {
     Router::new()
         .route("/", get(web::page))
         .route("/web/{version}/{*path}", get(web::file))
@@ -110,7 +110,7 @@ pub(crate) async fn show() -> impl IntoResponse {
 }
 
 async fn no_such_route(uri: Uri) -> Error {
-    let detail = format!("there is nothing at {}; the routes are listed at /openapi.json", uri.path());
+    let detail = format!("there is no route {}; the routes are listed at /openapi.json", uri.path());
     Error::new(ProblemKind::NoSuchRoute, detail)
 }
 

@@ -53,8 +53,8 @@ pub enum ServeError {
     Store(#[from] StoreError),
     /// Others could reach the service without authentication.
     #[error(
-        "will not listen on {0}: no valid token exists, so that anybody who reaches it could submit and cancel. Make one \
-         with `drillsweep token create --owner NAME --scope admin`, or listen on 127.0.0.1"
+        "will not listen on {0}: no valid token exists, so any client could submit and cancel. Create one with \
+         `drillsweep token create --owner NAME --scope admin`, or listen on 127.0.0.1"
     )]
     OpenToOthers(SocketAddr),
     /// Open requests did not end in time.
@@ -140,7 +140,7 @@ async fn reap_expired_leases(mut app: App) {
             }
             Err(error) => tracing::error!(%error, "the search for expired leases failed"),
         }
-        match app.store.finish_what_was_begun(LEFT_BEHIND.as_millis() as i64).await {
+        match app.store.finish_partial_changes(LEFT_BEHIND.as_millis() as i64).await {
             Ok(0) => {}
             Ok(number) => {
                 tracing::warn!(number, "half-stored, half-cancelled or half-deleted sweeps were finished")

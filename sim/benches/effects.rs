@@ -32,7 +32,7 @@ const SWITCHED: [Effect; 16] = [
 ];
 
 /// Scenarios that need fewer and fewer effects.
-const SCENES: [&str; 5] = ["as it is", "dry", "frictionless", "straight", "straight and frictionless"];
+const SCENARIOS: [&str; 5] = ["as it is", "dry", "frictionless", "straight", "straight and frictionless"];
 
 fn main() {
     divan::main();
@@ -47,7 +47,7 @@ fn base() -> Scenario {
     scenario
 }
 
-fn scene(name: &str) -> Scenario {
+fn named_scenario(name: &str) -> Scenario {
     let mut scenario = base();
     if name == "dry" {
         scenario.mud = None;
@@ -64,8 +64,8 @@ fn scene(name: &str) -> Scenario {
 }
 
 fn bench_run(bencher: Bencher, scenario: &Scenario) {
-    let model = Model::new(scenario).expect("the scene has a model");
-    let equilibrium = Equilibrium::find(&model).expect("the scene has an equilibrium");
+    let model = Model::new(scenario).expect("the scenario has a model");
+    let equilibrium = Equilibrium::find(&model).expect("the scenario has an equilibrium");
     bencher
         .with_inputs(|| Transient::new(&model, &equilibrium).expect("the run can be set up"))
         .bench_local_values(|transient| transient.run(&Control::new()));
@@ -80,14 +80,14 @@ fn without(bencher: Bencher, effect: &str) {
     bench_run(bencher, &scenario);
 }
 
-#[divan::bench(args = SCENES)]
+#[divan::bench(args = SCENARIOS)]
 fn auto(bencher: Bencher, name: &str) {
-    bench_run(bencher, &scene(name));
+    bench_run(bencher, &named_scenario(name));
 }
 
-#[divan::bench(args = SCENES)]
+#[divan::bench(args = SCENARIOS)]
 fn all_on(bencher: Bencher, name: &str) {
-    let mut scenario = scene(name);
+    let mut scenario = named_scenario(name);
     for &effect in Effect::ALL {
         scenario.effects.set(effect, Switch::On);
     }

@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_material_counts_where_it_is_used_however_it_is_given() {
+    fn a_material_enters_the_key_by_its_use_alone() {
         let bytes = canonical_json(&paper());
         let mut other = paper();
         let steel = other.string.material;
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn snapshots_count_where_they_are_asked_for_and_leave_other_keys_as_they_were() {
+    fn snapshots_change_the_keys_of_their_points_alone() {
         let bytes = canonical_json(&paper());
         let of = |snapshots: Value| canonical_json(&paper().with("recording.snapshots", snapshots).unwrap());
         assert_eq!(of(Value::Null), bytes);

@@ -60,8 +60,8 @@ fn distance(a: &Records, b: &Records) -> f64 {
 #[test]
 fn auto_agrees_with_everything_on_to_rounding() {
     type Change = fn(&mut Scenario);
-    // Scene, degrees of freedom that it leaves.
-    let scenes: [(&str, Change, usize); 7] = [
+    // Name, change, degrees of freedom that it leaves.
+    let scenarios: [(&str, Change, usize); 7] = [
         ("as it is", |_| {}, 6),
         ("dry", |s| s.mud = None, 6),
         ("still mud", |s| s.mud.as_mut().unwrap().flow_rate = 0.0, 6),
@@ -77,7 +77,7 @@ fn auto_agrees_with_everything_on_to_rounding() {
             4,
         ),
     ];
-    for (name, change, degrees_of_freedom) in scenes {
+    for (name, change, degrees_of_freedom) in scenarios {
         let mut scenario = base(0.2, METHODS[1]);
         change(&mut scenario);
         let mut everything = scenario.clone();
@@ -95,7 +95,7 @@ fn auto_agrees_with_everything_on_to_rounding() {
 }
 
 #[test]
-fn what_is_neglected_as_small_stays_within_its_estimate() {
+fn neglected_effects_stay_within_their_estimates() {
     let scenario = base(0.5, METHODS[1]);
     let mut neglecting = scenario.clone();
     neglecting.effects.auto = AutoRule::Aggressive;
@@ -108,7 +108,7 @@ fn what_is_neglected_as_small_stays_within_its_estimate() {
 }
 
 #[test]
-fn dropped_motions_stand_still_in_the_records_and_the_ledger_still_closes() {
+fn omitted_motions_are_zero_in_the_records_and_the_ledger_closes() {
     for method in METHODS {
         let mut scenario = base(0.1, method);
         straighten(&mut scenario);
@@ -140,7 +140,7 @@ fn the_ledger_closes_without_gravity() {
 }
 
 #[test]
-fn sliding_dissipates_at_all_times_only_where_friction_also_turns_the_string() {
+fn sliding_dissipates_at_all_times_only_if_friction_turns_the_string() {
     // Friction drives a rotor backwards along its wall.
     let dissipated = |torque: Switch| {
         let mut scenario = preset("hard/dry-friction-whirl").unwrap();

@@ -211,7 +211,7 @@ fn a_cantilever_of_two_materials_sags_as_beam_theory_says() {
 }
 
 #[test]
-fn a_bar_of_two_materials_shortens_and_twists_by_what_both_give() {
+fn bar_of_two_materials_adds_the_deformations_of_both() {
     let lengths = [7.0, 11.0];
     let (mut scenario, beams) = steel_and_aluminium(lengths);
     scenario.effects.set(Effect::Gravity, Switch::Off);
@@ -341,7 +341,7 @@ fn strings_under_strong_friction_rest_in_balance() {
 }
 
 #[test]
-fn strings_whose_drag_depends_strongly_on_where_they_lie_rest_in_balance() {
+fn strings_with_strongly_varying_drag_rest_in_balance() {
     // Random scenarios in which drag and position, computed from each other in turn, alternate or converge slowly.
     for index in [9, 279, 416, 630, 2004, 2485, 3896] {
         let model = Model::new(&random_scenario(1, index)).unwrap();
@@ -372,7 +372,7 @@ fn rubbing() -> Scenario {
 }
 
 #[test]
-fn torque_at_the_top_is_what_friction_takes_at_break_away_and_sliding() {
+fn torque_at_the_top_equals_friction_at_break_away_and_sliding() {
     let mut scenario = rubbing();
     let beam = section(&scenario);
     let weight = beam.density * beam.area * GRAVITY * 200.0;

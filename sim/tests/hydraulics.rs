@@ -665,7 +665,7 @@ fn pressures_against_a_hand_integral() {
 }
 
 #[test]
-fn still_mud_stands_equally_high_in_bore_and_annulus() {
+fn still_mud_has_equal_pressure_in_bore_and_annulus() {
     let still = Mud { flow_rate: 0.0, back_pressure: 1e5, ..MUD };
     let here = flow(&still, &DRILLPIPE, 0.5);
     let step = PressureStep {

@@ -291,7 +291,7 @@ fn cantilever_conveying_fluid_flutters_at_the_published_speed() {
 /// kappa^2 = 1/3, below that the bore's prevails and speeds up waves that travel down.
 #[test]
 fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
-    let scene = |ratio: f64, coriolis: Switch| {
+    let with_ratio = |ratio: f64, coriolis: Switch| {
         let mut scenario = preset("hard/vertical").expect("shipped preset");
         let mut pipe = scenario.string.sections[0];
         pipe.outer_diameter = ratio * scenario.well.hole_diameter;
@@ -322,8 +322,8 @@ fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
         depths.iter().map(|&z| at(z)).collect()
     };
     for ratio in [0.52_f64, 3_f64.sqrt().recip(), 0.65] {
-        let (mud, depths, with) = scene(ratio, Switch::On);
-        let (_, _, without) = scene(ratio, Switch::Off);
+        let (mud, depths, with) = with_ratio(ratio, Switch::On);
+        let (_, _, without) = with_ratio(ratio, Switch::Off);
         // Velocity a sine and displacement a cosine: c times the velocity's derivative is in phase with the displacement.
         let (displacement, velocity) = (field(&depths, PI / 2.0), field(&depths, 0.0));
         let mut force = vec![[0.0; 6]; depths.len()];
@@ -342,7 +342,7 @@ fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
 }
 
 #[test]
-fn without_falling_friction_torsion_does_not_grow() {
+fn without_velocity_weakening_friction_torsion_does_not_grow() {
     // The slope of the friction curve excites it: with mu_d = mu_s there is none.
     let mut scenario = base();
     scenario.contact.dynamic_friction = scenario.contact.static_friction;
@@ -489,7 +489,7 @@ fn stiff_walls_hold_as_supports_do() {
 }
 
 #[test]
-fn what_grows_is_found_on_a_mesh_of_thousands() {
+fn growing_modes_are_found_on_a_mesh_of_thousands() {
     // Velocity-weakening friction excites torsion of 200 m of string; steps of 4 cm or 50 cm are equal for a wave of a kilometre.
     let growing = |length: f64| {
         let mut scenario = preset("hard/elements-5000").expect("shipped preset");
@@ -641,7 +641,7 @@ fn equal_oscillators(nodes: usize) -> Pencil {
 }
 
 #[test]
-fn equal_eigenvalues_are_searched_again_and_those_still_missing_are_told() {
+fn equal_eigenvalues_are_searched_again_and_missing_ones_reported() {
     // A Krylov space from two vectors holds two shapes of an eigenvalue, however many it has.
     let search = ModeSearch { to_hz: 1.0, ..ModeSearch::default() };
     let few = modes_of(&equal_oscillators(1), &[0.0], &search).expect("found");

@@ -84,7 +84,7 @@ fn recorded(scenario: &Scenario) -> (Model, Equilibrium, Vec<NodeHistory>) {
 }
 
 #[test]
-fn a_torque_on_the_bit_is_the_torque_in_the_whole_of_a_string_that_nothing_rubs() {
+fn torque_on_bit_is_constant_along_a_frictionless_string() {
     let mut scenario = straight(0.0, 0.05);
     scenario.operation.torque_on_bit = -2500.0;
     scenario.operation.weight_on_bit = 0.0;
@@ -97,7 +97,7 @@ fn a_torque_on_the_bit_is_the_torque_in_the_whole_of_a_string_that_nothing_rubs(
 }
 
 #[test]
-fn the_torque_of_a_string_that_rubs_is_the_stiffness_of_its_shafts_times_their_twist() {
+fn torque_of_a_rubbing_string_is_torsional_stiffness_times_twist() {
     let scenario = straight(80.0, 2.0);
     let (model, equilibrium, histories) = recorded(&scenario);
     let material = &scenario.string.material;

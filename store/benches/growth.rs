@@ -85,7 +85,7 @@ async fn run(plan: &Plan, config: &StoreConfig, server: Option<&servers::postgre
     let is_over = Arc::new(AtomicBool::new(false));
 
     let large = sweep(SWEEP, "anne", plan.points);
-    let others = tokio::spawn(submit_beside(store.clone(), is_over.clone()));
+    let others = tokio::spawn(submit_concurrently(store.clone(), is_over.clone()));
     let began = Instant::now();
     let spent = Spent::now(server);
     store.submit_sweep(&large).await.expect("submitted");
@@ -103,7 +103,7 @@ async fn run(plan: &Plan, config: &StoreConfig, server: Option<&servers::postgre
         workers.push(tokio::spawn(work(store, number, plan.compute, is_over.clone(), finished.clone())));
     }
     tokio::time::sleep(WARM_UP).await;
-    let readers = tokio::spawn(read_beside(store.clone(), plan.points, is_over.clone()));
+    let readers = tokio::spawn(read_concurrently(store.clone(), plan.points, is_over.clone()));
     let began = Instant::now();
     let spent = Spent::now(server);
     let before = finished.load(Ordering::Relaxed);
@@ -177,7 +177,7 @@ fn own_time(process: u32) -> Option<(u32, Duration)> {
 }
 
 /// Another owner's sweeps of one point, one after the other.
-async fn submit_beside(store: Store, is_over: Arc<AtomicBool>) -> Vec<Duration> {
+async fn submit_concurrently(store: Store, is_over: Arc<AtomicBool>) -> Vec<Duration> {
     let mut times = Vec::new();
     while !is_over.load(Ordering::Relaxed) {
         let own = sweep(&format!("0191-{:09}", times.len()), "bob", 1);
@@ -198,7 +198,7 @@ struct Readings {
     versions: Vec<Duration>,
 }
 
-async fn read_beside(store: Store, points: i64, is_over: Arc<AtomicBool>) -> Readings {
+async fn read_concurrently(store: Store, points: i64, is_over: Arc<AtomicBool>) -> Readings {
     let mut readings = Readings::default();
     let mut after = 0;
     while !is_over.load(Ordering::Relaxed) {

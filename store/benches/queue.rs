@@ -104,7 +104,7 @@ fn submit_ten_thousand_points(bencher: Bencher) {
 
 /// Submission time of one owner's point while another owner submits and cancels a hundred thousand, time after time.
 #[divan::bench(sample_count = 500, sample_size = 1)]
-fn submit_beside_a_hundred_thousand_points(bencher: Bencher) {
+fn submit_next_to_a_hundred_thousand_points(bencher: Bencher) {
     let directory = tempfile::tempdir().expect("a temporary directory");
     let runtime = Runtime::new().expect("a runtime");
     let config = StoreConfig::in_directory(directory.path(), Role::Server);

@@ -1,6 +1,6 @@
 -- name: BLOBS
--- The blobs that results name.
--- Gives: the blob's name, its size.
+-- Blobs of unexpired artifacts.
+-- Returns: the blob's name, its size.
 SELECT blob, max(bytes) FROM artifact WHERE expired IS NULL GROUP BY blob ORDER BY blob
 
 -- name: RESULTS
@@ -8,5 +8,5 @@ SELECT blob, max(bytes) FROM artifact WHERE expired IS NULL GROUP BY blob ORDER 
 SELECT count(*) FROM result
 
 -- name: WITHOUT_RESULT
--- The work items that are done and have no result.
+-- Done work items without a result.
 SELECT key FROM work LEFT JOIN result ON work_key = key WHERE state = 'done' AND work_key IS NULL ORDER BY key

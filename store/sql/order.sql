@@ -1,11 +1,11 @@
 -- name: ENDS_OF_ORDER
--- The first and the last place that is taken in an owner's order; 0 where none is.
+-- First and last position taken in an owner's order; 0 if there is none.
 -- $1 owner.
--- A query for each end: asked for both at once, SQLite reads all of them.
+-- One query for each end: for both at once SQLite scans all rows.
 SELECT coalesce((SELECT min(vtime) FROM work WHERE owner = $1 AND is_open), 0),
        coalesce((SELECT max(vtime) FROM work WHERE owner = $1 AND is_open), 0)
 
 -- name: INSERT_TURN
--- Gives an owner that has had no turn its first.
+-- Creates the turn of an owner that has none.
 -- $1 owner.
 INSERT INTO owner_turn (owner, vtime) VALUES ($1, 0) ON CONFLICT (owner) DO NOTHING

@@ -4,7 +4,7 @@
 SELECT name, media_type, blob, bytes, row_count, expired FROM artifact WHERE work_key = $1 ORDER BY name
 
 -- name: ONE
--- A point with its scenario and result.
+-- Point with its scenario and result.
 -- $1 sweep, $2 ordinal.
 SELECT p.ordinal, p.parameters, w.key, base.text AS base, w.changes,
        CASE WHEN s.cancelled AND w.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE w.state END AS state,
@@ -14,9 +14,9 @@ JOIN scenario base ON base.hash = w.base LEFT JOIN result r ON r.work_key = w.ke
 WHERE p.sweep_id = $1 AND p.verifies = false AND p.ordinal = $2
 
 -- name: TABLE
--- The table of a sweep: its points in order, a page.
--- $1 sweep, $2 the ordinal after which the page begins, $3 the most points.
--- Gives: ordinal, parameters, state, summary, error.
+-- Page of a sweep's table: its points in order.
+-- $1 sweep, $2 ordinal before the page, $3 largest number of points.
+-- Returns: ordinal, parameters, state, summary, error.
 SELECT p.ordinal, p.parameters,
        CASE WHEN s.cancelled AND w.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE w.state END AS state,
        r.summary, w.error
@@ -26,7 +26,7 @@ ORDER BY p.ordinal LIMIT $3
 
 -- name: WITH_ARTIFACTS
 -- Artifacts of points of a sweep, by point and name.
--- $1 sweep, $2 ordinal after which the points are, $3 how many points at most.
+-- $1 sweep, $2 ordinal before the first point, $3 largest number of points.
 SELECT p.ordinal, p.work_key, a.name, a.media_type, a.blob, a.bytes, a.row_count, a.expired
 FROM (SELECT ordinal, work_key FROM point
       WHERE sweep_id = $1 AND verifies = false AND ordinal > $2

@@ -1,6 +1,6 @@
 -- name: CANCEL
--- Ends a lease whose work nobody wants any more; where it was asked for again since the worker's last renewal, the work is
--- queued. A result from before stays, and the work is done then.
+-- Ends a lease after a cancellation; if the work was requested again since the worker's last renewal, it is queued. If the work ends
+-- here and has an earlier result, its state becomes done.
 -- $1 work item, $2 fencing token, $3 worker, $4 error, JSON.
 UPDATE work SET
     state = CASE WHEN NOT cancel_requested THEN 'queued'
@@ -12,9 +12,9 @@ UPDATE work SET
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 
 -- name: CRASH
--- Ends a lease whose worker the work brought down in a way that it survived: a death of the worker, and the last that the
--- work is given makes it dead. A result from before stays, and the work is done then.
--- $1 work item, $2 fencing token, $3 worker, $4 error, JSON, $5 deaths that make it dead.
+-- Ends a lease after a crash that the worker process survived. It counts as a crash; work that reaches the limit becomes dead. If the
+-- work ends here and has an earlier result, its state becomes done.
+-- $1 work item, $2 fencing token, $3 worker, $4 error, JSON, $5 limit of crashes.
 UPDATE work SET
     crash_count = crash_count + 1, progress = 0, lease_until = NULL, error = $4, changed = (SELECT now FROM clock),
     state = CASE WHEN NOT cancel_requested AND crash_count + 1 < $5 THEN 'queued'
@@ -24,31 +24,31 @@ UPDATE work SET
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 
 -- name: DELETE_RESULT
--- Makes room for a new result; the artifacts of the one before go with it.
+-- Deletes an earlier result, with its artifacts, before a new one is stored.
 -- $1 work item.
 DELETE FROM result WHERE work_key = $1
 
 -- name: DEPTHS
 -- Counts the open work items by state.
--- Gives: waiting, queued, queued but held, leased.
+-- Returns: waiting, queued, queued but held (paused), leased.
 SELECT count(*) FILTER (WHERE state = 'waiting'), count(*) FILTER (WHERE state = 'queued' AND NOT held),
        count(*) FILTER (WHERE state = 'queued' AND held), count(*) FILTER (WHERE state = 'leased')
 FROM work WHERE is_open
 
 -- name: EARLIER_BLOBS
--- The artifacts of the result that a new one takes the place of.
+-- Artifacts of an earlier result.
 -- $1 work item.
--- Gives: name, blob.
+-- Returns: name, blob.
 SELECT name, blob FROM artifact WHERE work_key = $1
 
 -- name: EARLIER_RESULT
--- The result that a new one takes the place of.
+-- An earlier result.
 -- $1 work item.
--- Gives: summary, provenance, whether it disagrees with one before it.
+-- Returns: summary, provenance, true if it disagrees with one before it.
 SELECT summary, provenance, disagrees FROM result WHERE work_key = $1
 
 -- name: FAIL
--- Ends a lease without a result, for good. A result from before stays, and the work is done then.
+-- Ends a lease without a result; there is no retry. If the work ends here and has an earlier result, its state becomes done.
 -- $1 work item, $2 fencing token, $3 worker, $4 error, JSON.
 UPDATE work SET
     state = CASE WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done' ELSE 'failed' END,
@@ -58,7 +58,7 @@ WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 -- name: FINISH
 -- Ends a lease with a result.
 -- $1 work item, $2 fencing token, $3 worker.
--- Gives: the time; nothing if the lease is lost.
+-- Returns: the time; nothing if the lease is lost.
 UPDATE work SET
     state = 'done', progress = 1, error = NULL, checkpoint = NULL, lease_until = NULL, changed = (SELECT now FROM clock)
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
@@ -75,8 +75,8 @@ INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count) VALUES
 INSERT INTO result (work_key, summary, provenance, created) VALUES ($1, $2, $3, $4)
 
 -- name: IS_ANYTHING_DUE
--- Whether a lease has run out, a retry is due, or one of them ends later than it could, had it begun now: then the clock
--- was set back.
+-- True if a lease has expired or a retry is due, or if either ends later than it would from now on, which shows that the clock was set
+-- back.
 -- $1 longest wait of a retry [ms].
 SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < (SELECT now FROM clock))
     OR EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until > (SELECT now FROM clock) + lease_ms)
@@ -85,13 +85,13 @@ SELECT EXISTS (SELECT 1 FROM work WHERE state = 'leased' AND lease_until < (SELE
                  AND (ready_at <= (SELECT now FROM clock) OR ready_at > (SELECT now FROM clock) + $1))
 
 -- name: KEEP_CHECKPOINT
--- Notes the blob from which the work can go on.
+-- Stores the checkpoint's blob from which the work can resume.
 -- $1 work item, $2 fencing token, $3 worker, $4 blob.
 UPDATE work SET checkpoint = $4
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 
 -- name: NOTE_WORKER
--- Notes what is known of the worker that has the work.
+-- Stores a note about the worker that holds the lease.
 -- $1 work item, $2 fencing token, $3 worker, $4 the note.
 UPDATE work SET worker_note = $4
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
@@ -102,8 +102,8 @@ WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 SELECT count(*) FROM work WHERE owner = $1 AND is_open
 
 -- name: RELEASE
--- Ends a lease whose work is given back untried: it is queued, or cancelled where nobody wants it any more. A result from
--- before stays, and the work is done then.
+-- Ends a lease without counting an attempt: the work is queued, or cancelled if a cancellation was requested. If the work ends here and
+-- has an earlier result, its state becomes done.
 -- $1 work item, $2 fencing token, $3 worker.
 UPDATE work SET
     state = CASE WHEN NOT cancel_requested THEN 'queued'
@@ -113,12 +113,12 @@ UPDATE work SET
 WHERE key = $1 AND fencing_token = $2 AND lease_owner = $3 AND state = 'leased'
 
 -- name: SHORTEN_LEASES
--- Cuts leases that end later than they could, had they begun now, to their whole length from now.
+-- Shortens leases that end later than their full length from now, as after the clock was set back.
 UPDATE work SET lease_until = (SELECT now FROM clock) + lease_ms
 WHERE state = 'leased' AND lease_until > (SELECT now FROM clock) + lease_ms
 
 -- name: WAKE
--- Queues retries that are due, and those that would wait longer than they could, had they begun now.
+-- Queues retries that are due, and those that wait longer than the longest wait from now on, as after the clock was set back.
 -- $1 longest wait of a retry [ms].
 UPDATE work SET state = 'queued', changed = (SELECT now FROM clock)
 WHERE state = 'waiting'

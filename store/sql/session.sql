@@ -5,12 +5,12 @@ DELETE FROM session WHERE hash = $1
 
 -- name: OPEN
 -- Opens a session.
--- $1 hash of its text, $2 token, $3 how long it is valid [ms].
+-- $1 hash of its text, $2 token, $3 validity [ms].
 INSERT INTO session (hash, token_id, created, expires)
 VALUES ($1, $2, (SELECT now FROM clock), (SELECT now FROM clock) + $3)
 
 -- name: TOKEN
--- The token that a session was opened by, if both are valid now, and when the first of them expires.
+-- Token of a session, if both are valid, and the earlier of both expiries.
 -- $1 hash of the session's text.
 SELECT t.id, t.owner, t.name, t.scope, t.created, t.expires, t.revoked, t.last_used,
        CASE WHEN t.expires < s.expires THEN t.expires ELSE s.expires END AS session_expires

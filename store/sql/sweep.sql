@@ -1,6 +1,6 @@
 -- name: CANCEL
--- Marks a sweep as cancelled, unless it is so already. What it has open counts as cancelled; what is stopped for it counts as running
--- again until it has ended (`CANCEL_WORK`).
+-- Marks a sweep as cancelled, unless it is already. Its open points count as cancelled; those whose work is stopped count as running
+-- again until the work has ended (`CANCEL_WORK`).
 -- $1 sweep.
 UPDATE sweep SET
     cancelled = true, cancelled_to = 0, version = version + 1, revision = revision + 1, finished = coalesce(finished, (SELECT now FROM clock)),
@@ -10,15 +10,15 @@ UPDATE sweep SET
 WHERE id = $1 AND NOT cancelled
 
 -- name: CANCEL_TO
--- Notes up to which point the work of a cancelled sweep is cancelled.
+-- Stores the last point to which the work of a cancelled sweep is cancelled; null after the last point.
 -- $1 sweep, $2 the ordinal.
 UPDATE sweep SET cancelled_to = CASE WHEN $2 < points THEN CAST($2 AS bigint) END WHERE id = $1
 
 -- name: CANCEL_WORK
--- Cancels the open work of a sweep that no live sweep wants: has a point of it, or verifies one by it, and of work that has
--- a result which is not damaged, asks to recompute it. What is under way ends when its worker hears of it. A result from before stays, and
--- the work is done then.
--- $1 sweep, $2 ordinal after which its points are, $3 the last.
+-- Cancels the open work of a sweep that no live sweep needs. A live sweep needs work of its points and verification runs that has no
+-- undamaged result, or whose results it recomputes. Leased work ends at its worker's next renewal. If the work ends here and has an
+-- earlier result, its state becomes done.
+-- $1 sweep, $2 ordinal before the first point, $3 ordinal of the last.
 UPDATE work SET
     cancel_requested = (state = 'leased'),
     changed = CASE state WHEN 'leased' THEN changed ELSE (SELECT now FROM clock) END,
@@ -32,15 +32,15 @@ WHERE key IN (SELECT work_key FROM point WHERE sweep_id = $1 AND verifies IN (fa
                     AND (s.refreshes OR NOT EXISTS (SELECT 1 FROM result r WHERE r.work_key = work.key AND r.damaged IS NULL)))
 
 -- name: CANCELLED_TO
--- Up to which point the work of a cancelled sweep is cancelled.
+-- Last point to which the work of a cancelled sweep is cancelled.
 -- $1 sweep.
--- Gives: the ordinal, number of points; nothing once all of it is.
+-- Returns: the ordinal, number of points; nothing once all of it is.
 SELECT cancelled_to, points FROM sweep WHERE id = $1 AND cancelled_to IS NOT NULL
 
 -- name: CHANGE
--- Changes what can be changed of a sweep.
--- $1 sweep, $2 whether the name changes, $3 name, $4 priority or none, $5 tags or none, $6 whether it is pinned, or none,
--- $7 whether the time changes at which it is deleted, $8 that time, $9 the revision that it must have, or none for any.
+-- Changes the editable fields of a sweep.
+-- $1 sweep, $2 true if the name changes, $3 name, $4 priority or null, $5 tags or null, $6 pin or null, $7 true if the expiry changes,
+-- $8 expiry, $9 required revision, or null for any.
 UPDATE sweep SET
     name = CASE WHEN $2 THEN $3 ELSE name END, priority = coalesce($4, priority),
     tags = coalesce($5, tags), pinned = coalesce($6, pinned),
@@ -48,7 +48,7 @@ UPDATE sweep SET
 WHERE id = $1 AND hidden IS NULL AND ($9 IS NULL OR revision = $9)
 
 -- name: CHANGE_PRIORITY_OF_WORK
--- Gives the open work of a sweep the priority of the most urgent live sweep that has it.
+-- Sets the priority of a sweep's open work to the highest of the live sweeps that have it.
 -- $1 sweep.
 UPDATE work SET
     priority = coalesce((SELECT max(s.priority) FROM point p JOIN sweep s ON s.id = p.sweep_id
@@ -56,39 +56,39 @@ UPDATE work SET
 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = $1) AND is_open
 
 -- name: COUNT_EVENTS
--- Raises the version of a sweep beyond events that were stored at once.
--- $1 sweep, $2 their number; one more is added where it is finished.
+-- Increases the version of a sweep by a batch of stored events.
+-- $1 sweep, $2 their number; a finished sweep gets one more.
 UPDATE sweep SET version = version + $2 + CASE WHEN finished IS NULL THEN 0 ELSE 1 END WHERE id = $1
 
 -- name: DELETABLE
--- Whether a sweep may be deleted, and what goes with it.
+-- Data for the deletion of a sweep.
 -- $1 sweep.
--- Gives: revision, whether it is pinned, when it finished, number of points.
+-- Returns: revision, true if it is pinned, time of its end, number of points.
 SELECT revision, pinned, finished, points FROM sweep WHERE id = $1 AND hidden IS NULL
 
 -- name: DELETE
--- Deletes a sweep; its points, events, requests and idempotency keys go with it.
+-- Deletes a sweep, with its points, events, requests and idempotency keys.
 -- $1 sweep.
 DELETE FROM sweep WHERE id = $1
 
 -- name: DELETE_EVENTS
--- Deletes the first events of a sweep that there are.
--- $1 sweep, $2 how many at most.
+-- Deletes the first events of a sweep.
+-- $1 sweep, $2 largest number of rows.
 DELETE FROM event
 WHERE sweep_id = $1 AND seq IN (SELECT seq FROM event WHERE sweep_id = $1 ORDER BY seq LIMIT $2)
 
 -- name: DELETE_POINTS
--- Deletes the first points of a sweep that there are.
--- $1 sweep, $2 up to which ordinal.
+-- Deletes the first points of a sweep.
+-- $1 sweep, $2 ordinal of the last to delete.
 DELETE FROM point WHERE sweep_id = $1 AND verifies IN (false, true) AND ordinal <= $2
 
 -- name: FORGET_KEYS
--- Forgets for which idempotency keys a sweep was made.
+-- Deletes the idempotency keys of a sweep.
 -- $1 sweep.
 DELETE FROM idempotency WHERE sweep_id = $1
 
 -- name: HALF_CANCELLED
--- The sweeps whose work is not all cancelled yet.
+-- Cancelled sweeps with work that is not cancelled yet.
 SELECT id FROM sweep WHERE cancelled_to IS NOT NULL
 
 -- name: HIDE
@@ -97,10 +97,9 @@ SELECT id FROM sweep WHERE cancelled_to IS NOT NULL
 UPDATE sweep SET hidden = (SELECT now FROM clock) WHERE id = $1
 
 -- name: HOLD_BACK
--- Holds back the open work of a sweep, or lets it go: it is held while no live sweep wants it that is not paused. A sweep
--- wants what it has a point of, or verifies one by, and of work that has a result which is not damaged, what it asks
--- to recompute.
--- $1 sweep, $2 ordinal after which its points are, $3 the last.
+-- Holds or releases the open work of a sweep: it is held while no live unpaused sweep needs it. A sweep needs work of its points and
+-- verification runs that has no undamaged result, or whose results it recomputes.
+-- $1 sweep, $2 ordinal before the first point, $3 ordinal of the last.
 UPDATE work SET held = NOT EXISTS (
     SELECT 1 FROM point p JOIN sweep s ON s.id = p.sweep_id
     WHERE p.work_key = work.key AND NOT s.cancelled AND NOT s.paused
@@ -108,14 +107,14 @@ UPDATE work SET held = NOT EXISTS (
 WHERE key IN (SELECT work_key FROM point WHERE sweep_id = $1 AND verifies IN (false, true) AND ordinal > $2 AND ordinal <= $3) AND is_open
 
 -- name: KEEP_RUNNING_WORK
--- Takes the cancellation of a sweep's work back that is under way.
+-- Withdraws the requested cancellation of a sweep's leased work.
 -- $1 sweep.
 UPDATE work SET cancel_requested = false
 WHERE state = 'leased' AND cancel_requested AND key IN (SELECT work_key FROM point WHERE sweep_id = $1)
 
 -- name: LEAVE_WORK
--- Tells those who watch a cancelled sweep that it is done with what goes on for others.
--- $1 sweep, $2 ordinal after which its points are, $3 the last.
+-- Stores the `cancelled` events of a cancelled sweep for open work that continues for other sweeps.
+-- $1 sweep, $2 ordinal before the first point, $3 ordinal of the last.
 INSERT INTO event (sweep_id, seq, kind, work_key, at)
 SELECT s.id, s.version + row_number() OVER (ORDER BY shared.key), 'cancelled', shared.key, (SELECT now FROM clock)
 FROM (SELECT DISTINCT w.key FROM point p JOIN work w ON w.key = p.work_key
@@ -123,14 +122,14 @@ FROM (SELECT DISTINCT w.key FROM point p JOIN work w ON w.key = p.work_key
 JOIN sweep s ON s.id = $1
 
 -- name: LEFT_HIDDEN
--- The sweeps that have been hidden for so long that nobody works on them any more.
--- $1 how long [ms].
+-- Sweeps whose process has abandoned them while hidden.
+-- $1 least time since their last renewal [ms].
 SELECT id FROM sweep WHERE hidden IS NOT NULL AND hidden < (SELECT now FROM clock) - $1
 
 -- name: OWN_RESULTS
--- The results of a sweep that no other one has.
+-- Results of a sweep that no other sweep has.
 -- $1 sweep.
--- Gives: their number, size of their tables [bytes].
+-- Returns: number, size of their unexpired artifacts [bytes].
 SELECT count(*),
        CAST(coalesce(sum((SELECT sum(bytes) FROM artifact WHERE work_key = own.work_key AND expired IS NULL)), 0) AS bigint)
 FROM (SELECT DISTINCT p.work_key FROM point p
@@ -139,12 +138,12 @@ FROM (SELECT DISTINCT p.work_key FROM point p
 JOIN result ON result.work_key = own.work_key
 
 -- name: PAUSE
--- Marks a sweep as paused, or not any more.
--- $1 sweep, $2 whether it is paused.
+-- Pauses or resumes a sweep.
+-- $1 sweep, $2 true to pause it.
 UPDATE sweep SET paused = $2, version = version + 1, revision = revision + 1 WHERE id = $1 AND hidden IS NULL
 
 -- name: RECOUNT
--- Counts all points of a sweep that is not cancelled any more, and the runs that verify them.
+-- Recounts all points and verification runs of a sweep whose cancellation was withdrawn.
 -- $1 sweep.
 UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
                   verifications_queued, verifications_running, verifications_done, verifications_failed,
@@ -165,13 +164,13 @@ UPDATE sweep SET (points_queued, points_running, points_done, points_failed, poi
 WHERE id = $1
 
 -- name: REVIVE
--- Takes a sweep's cancellation back.
+-- Withdraws the cancellation of a sweep.
 -- $1 sweep.
--- Gives: owner.
+-- Returns: owner.
 UPDATE sweep SET cancelled = false, cancelled_to = NULL, version = version + 1, revision = revision + 1 WHERE id = $1 AND hidden IS NULL RETURNING owner
 
 -- name: STOP_WORK
--- Asks for the end of what is under way for a sweep and no live sweep wants, as `CANCEL_WORK` does for all of its work.
+-- Requests the cancellation of leased work of a sweep that no live sweep needs, as `CANCEL_WORK` does for all of its open work.
 -- $1 sweep.
 UPDATE work SET cancel_requested = true
 WHERE state = 'leased' AND NOT cancel_requested

@@ -4,22 +4,22 @@ SELECT id, owner, name, scope, created, expires, revoked, last_used FROM token O
 
 -- name: PRESENT
 -- Counts the tokens.
--- Gives: all, those that are valid now.
+-- Returns: all, valid ones.
 SELECT count(*), count(*) FILTER (WHERE revoked IS NULL AND (expires IS NULL OR expires > (SELECT now FROM clock)))
 FROM token
 
 -- name: REVOKE
--- Makes a token void.
+-- Revokes a token; a second revocation keeps the first time.
 -- $1 token.
 UPDATE token SET revoked = coalesce(revoked, (SELECT now FROM clock)) WHERE id = $1
 
 -- name: TOUCH
--- Notes that a token was used.
+-- Stores the time of a token's last use.
 -- $1 token, $2 time.
 UPDATE token SET last_used = $2 WHERE id = $1
 
 -- name: VALID
--- The token of a text, if it is valid now.
+-- Valid token of a text.
 -- $1 hash of the text.
 SELECT id, owner, name, scope, created, expires, revoked, last_used FROM token
 WHERE hash = $1 AND revoked IS NULL AND (expires IS NULL OR expires > (SELECT now FROM clock))

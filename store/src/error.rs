@@ -30,7 +30,8 @@ pub enum StoreError {
     Migration(#[source] MigrateError),
     /// Another version of this program made the schema: its migrations are not those of this one.
     #[error(
-        "database schema: another version of drillsweep made it, and this one does not read it ({0}); start with a new database, or use that version"
+        "database schema: written by a version of drillsweep that this one cannot read ({0}); start with a new \
+         database, or use that version"
     )]
     OtherSchema(#[source] MigrateError),
     /// The object store failed.
@@ -44,11 +45,11 @@ pub enum StoreError {
     /// A result names a blob that is not there, or not any more: it must be written again.
     #[error("the blob {0} of a result is missing")]
     BlobMissing(String),
-    /// The content of a blob is not what was written: a disk or a person changed it.
+    /// The content of a blob has changed since it was written.
     #[error("the content of the blob {0} does not match its hash")]
     BlobDamaged(BlobId),
     /// A range of bytes is empty, or begins beyond the end of the blob.
-    #[error("the blob {0} has no such bytes")]
+    #[error("the range is outside of the blob {0}")]
     NoSuchRange(BlobId),
     /// A directory could not be made, or the database's lock file not taken.
     #[error("{path}: {source}")]
@@ -82,13 +83,13 @@ pub enum StoreError {
     #[error("random numbers: {0}")]
     Random(String),
     /// An idempotency key was used for another request.
-    #[error("the idempotency key was used for another request before")]
+    #[error("the idempotency key belongs to another request")]
     IdempotencyConflict,
     /// The sweep that an idempotency key was used for is just being stored.
-    #[error("the sweep of this idempotency key is just being stored")]
+    #[error("the sweep of this idempotency key is still being stored")]
     Arriving,
-    /// A sweep was not shown in time, and was taken away.
-    #[error("storing the sweep took so long that it was taken away as if its process had died")]
+    /// A sweep was not stored in time and was removed.
+    #[error("storing the sweep took too long, and it was removed as abandoned")]
     TakenAway,
 }
 
@@ -126,8 +127,8 @@ impl StoreError {
             && (self.cause(|_: &HttpError| true) || self.answer_has(&UNABLE))
     }
 
-    /// True if a blob is lost: it is not there, is not what was written, or lies on a part of the disk that cannot be read.
-    /// Trying again brings nothing; what the blob held has to be computed again.
+    /// True if a blob is lost: missing, changed, or on an unreadable part of the disk. A retry cannot help; its content has to be
+    /// recomputed.
     pub fn is_damage(&self) -> bool {
         /// The errno of a failed read on Linux and other Unix systems.
         const EIO: i32 = 5;

@@ -28,7 +28,7 @@ impl Metrics {
         }
         registry.register(
             "expired_leases",
-            "Leases of silent workers that this process has ended, by the state of their work after that",
+            "Leases that expired and were ended by this process, by the resulting state of their work",
             self.expired_leases.clone(),
         );
         self.objects.register(registry);

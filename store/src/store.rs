@@ -23,14 +23,14 @@ pub struct StoreConfig {
     pub objects: ObjectsLocation,
     /// Role of the process that opens it.
     pub role: Role,
-    /// Added to the database's clock \[ms\]: zero but in tests of what time does.
+    /// Offset of the database's clock \[ms\]: zero except in tests.
     pub clock_offset_ms: i64,
     /// Counts its use.
     pub metrics: Metrics,
 }
 
 impl StoreConfig {
-    /// A SQLite file and the blobs in one directory; what does not exist is made when the store is opened.
+    /// A SQLite file and the blobs in one directory; opening the store creates them if they are missing.
     pub fn in_directory(directory: &Path, role: Role) -> Self {
         Self {
             database: DatabaseLocation::Sqlite(directory.join("drillsweep.sqlite")),
@@ -107,11 +107,10 @@ impl Store {
         &self.blobs
     }
 
-    /// Asks an object store that is reached by TLS whether it has a certificate that is accepted. One that does not answer is no
-    /// matter: it is asked again when it is needed.
+    /// Checks the certificate of an object store that is reached by TLS. A store that does not answer is no error here.
     ///
     /// # Errors
-    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) if it has not.
+    /// [`StoreError::UntrustedObjects`](crate::StoreError::UntrustedObjects) if it is refused.
     pub async fn check_certificate(&self) -> Result<()> {
         self.blobs.check_certificate().await
     }

@@ -3,10 +3,10 @@
 
 use drillsweep_scenario::{Accuracy, AccuracyPreset, Scenario};
 use drillsweep_study::errors::TimeError;
-use whole_run_scenes::{WholeRun, apart, scenes};
+use whole_run_scenarios::{WholeRun, apart, scenarios};
 
-#[path = "../tests/whole_run_scenes/mod.rs"]
-mod whole_run_scenes;
+#[path = "../tests/whole_run_scenarios/mod.rs"]
+mod whole_run_scenarios;
 
 /// Comparison of estimates with true errors.
 #[derive(Debug, Default)]
@@ -26,9 +26,9 @@ fn main() {
     );
     println!(
         "{:30} {:10} {:>8} {:>9} {:>10} {:>9} {:>14}",
-        "scene", "accuracy", "size", "deviation", "estimate", "of two", "amplification"
+        "scenario", "accuracy", "size", "deviation", "estimate", "of two", "amplification"
     );
-    for (name, scenario) in scenes() {
+    for (name, scenario) in scenarios() {
         let reference = WholeRun::by_rk4(&scenario);
         let agreement = apart(&WholeRun::by_esdirk4(&scenario, 2.5e-4), &reference);
         println!("{name:30} {:10} {:>8.1e} {:>9.1e}", "(two methods)", agreement[0], agreement[1]);

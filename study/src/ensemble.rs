@@ -110,7 +110,7 @@ mod tests {
     use drillsweep_sim::solve::run::NodeHistory;
 
     #[test]
-    fn histories_part_where_their_distance_passes_a_tenth_of_the_motion() {
+    fn histories_diverge_at_a_tenth_of_the_motion() {
         let history = |growth: f64| {
             let time = (0..1000).map(|k| k as f64 / 100.0);
             let u: Vec<f64> = time.map(|t| t.sin() + 1e-6 * (growth * t).exp()).collect();

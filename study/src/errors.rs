@@ -225,7 +225,8 @@ impl TimeError {
             ));
         }
         if others.is_empty() && twin.is_none() {
-            let condition = "the scenario amplifies disturbances no more than most do; one run cannot measure it, ensemble=2 does";
+            let condition =
+                "the scenario amplifies disturbances no more than most do; ensemble=2 measures it";
             return TimeError::Conditional { statistics, condition: condition.into() };
         }
         TimeError::Estimated { statistics, amplification }
@@ -502,7 +503,7 @@ mod tests {
     }
 
     #[test]
-    fn what_steps_did_not_resolve_has_no_estimate() {
+    fn unresolved_motion_has_no_estimate() {
         let sound = TransientSummary { energy_residual_of_bound: Some(0.04), ..run() };
         assert!(TimeError::new(&sound, &[], None, None).statistics().is_some());
         for unsound in [

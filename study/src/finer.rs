@@ -62,7 +62,7 @@ impl Difference {
 
 /// Bounds for an accuracy in this check: its own; for `esdirk4` with a tolerance, those of this tolerance; and for other
 /// steps, which have no bounds, those of `standard`.
-pub fn asked_of(accuracy: &Accuracy) -> Promise {
+pub fn promise_of(accuracy: &Accuracy) -> Promise {
     let stepping = accuracy.time_stepping();
     let tolerance = stepping.tolerance.filter(|_| stepping.integrator == Integrator::Esdirk4);
     let standard = AccuracyPreset::Standard.tolerance();
@@ -83,7 +83,7 @@ const NEIGHBOURS: u32 = 3;
 /// Runs a model with a [finer step](TimeStepping::finer) and compares the run with its first one, whose measure is `own`.
 pub fn ask(own: &Measure, model: &Model, equilibrium: &Equilibrium, control: &Control) -> Verdict {
     let stepping = model.scenario.accuracy.time_stepping();
-    let promise = asked_of(&model.scenario.accuracy);
+    let promise = promise_of(&model.scenario.accuracy);
     let against =
         |stepping: TimeStepping, member: u32| match measure(model, equilibrium, stepping, member, control) {
             Ok(Some(other)) => compare(own, &other, &model.scenario, promise),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_damps_what_is_read_is_found_out() {
+    fn a_step_that_damps_the_statistics_is_detected() {
         // On the axis an unbalance drives a whirl from rest; a method of order 2 does not follow it with ten steps a second.
         let of = |step| {
             verdict("hard/on-axis", TimeStepping::fixed(Integrator::GeneralizedAlpha, step), Switch::Off)
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_is_at_rest_and_what_has_no_finer_run_says_why() {
+    fn a_still_run_is_at_rest_and_a_missing_finer_run_has_its_reason() {
         let standard = TimeStepping::adaptive(0.02);
         assert_eq!(verdict("hard/near-buckling", standard, Switch::Auto), Verdict::AtRest);
         let control = Control::new();

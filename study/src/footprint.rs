@@ -8,7 +8,7 @@ use drillsweep_sim::math::signal::sample_range;
 use drillsweep_sim::solve::model::{Model, ModelError};
 use drillsweep_sim::solve::run::{
     BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, LOAD_BYTES, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries,
-    SnapshotTimes, bit_beside, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
+    SnapshotTimes, additional_bit, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
     spectrum_windows_at_most,
 };
 
@@ -121,7 +121,7 @@ impl Recorded {
         let orbit = length(&orbit_window_at_most(scenario));
         Self {
             nodes: recorded_nodes(model).len() as u64,
-            of_bit: bit_beside(model).map_or(0, |_| BIT_COLUMNS),
+            of_bit: additional_bit(model).map_or(0, |_| BIT_COLUMNS),
             samples: samples as u64,
             kept_samples: if scenario.settles() {
                 length(&kept_window_at_most(scenario))

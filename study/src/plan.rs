@@ -131,7 +131,7 @@ const LARGE_MESH: f64 = 5.0;
 const BASE_NODES: f64 = 297.0;
 
 /// Contact iterations that are enough for convergence.
-const CONVERGED_SWEEPS: u32 = 20;
+const CONVERGED_CONTACT_ITERATIONS: u32 = 20;
 
 /// Methods whose steps differ in cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -353,7 +353,7 @@ impl MethodKind {
             MethodKind::Esdirk4 => (TimeStepping::fixed(Integrator::Esdirk4, 1e-3), 0.03),
             MethodKind::Esdirk4Converged => {
                 let stepping = TimeStepping::fixed(Integrator::Esdirk4, 2.5e-4);
-                (TimeStepping { contact_sweeps: CONVERGED_SWEEPS, ..stepping }, 0.01)
+                (TimeStepping { contact_sweeps: CONVERGED_CONTACT_ITERATIONS, ..stepping }, 0.01)
             }
             MethodKind::Rk4 => (TimeStepping::fixed(Integrator::Rk4, 5e-5), 0.005),
         }
@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mesh_auto_costs_what_each_accuracy_makes_of_it() {
+    fn the_mesh_auto_costs_by_the_accuracy() {
         let mut scenario = preset("paper-200m-damped").unwrap();
         scenario.mesh = Mesh::AUTO;
         let plan = Plan::new(&scenario, None).unwrap();
@@ -504,13 +504,13 @@ mod tests {
     #[test]
     fn planned_steps_and_degrees_of_freedom_are_those_of_the_run() {
         type Change = fn(&mut Scenario);
-        let scenes: [Change; 4] = [
+        let changes: [Change; 4] = [
             |_| {},
             |s| (s.contact.stiffness, s.contact.damping) = (1e8, 1e5),
             |s| s.effects.torsion = Switch::Off,
             |s| s.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Rk4, 6e-5)),
         ];
-        for change in scenes {
+        for change in changes {
             let mut scenario = paper();
             scenario.duration = 0.02;
             scenario.accuracy = Accuracy::Explicit(TimeStepping::fixed(Integrator::Esdirk4, 1e-3));

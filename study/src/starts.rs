@@ -4,7 +4,7 @@ use std::fmt;
 
 use drillsweep_scenario::{Accuracy, StartFriction};
 
-use super::finer::asked_of;
+use super::finer::promise_of;
 use super::summary::{OrbitSummary, TransientSummary};
 use drillsweep_sim::solve::run::DISTURBANCE;
 
@@ -27,14 +27,14 @@ pub struct StartsCompared {
 }
 
 impl StartsCompared {
-    /// The comparison of a run from the friction `own` with the same run from the other one, by the [bounds](asked_of) of an accuracy.
+    /// The comparison of a run from the friction `own` with the same run from the other one, by the [bounds](promise_of) of an accuracy.
     pub fn new(
         run: &TransientSummary,
         other: &TransientSummary,
         own: StartFriction,
         accuracy: &Accuracy,
     ) -> Self {
-        let promise = asked_of(accuracy);
+        let promise = promise_of(accuracy);
         let nodes = || run.orbits.iter().zip(&other.orbits);
         let apart = |of: fn(&OrbitSummary) -> f64| {
             nodes()
@@ -89,7 +89,7 @@ impl fmt::Display for StartsCompared {
         }
         write!(
             formatter,
-            "; either the scenario has hysteresis or the window begins before the start is forgotten"
+            "; either the scenario has hysteresis or the window begins before the transient of the start has decayed"
         )
     }
 }
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn starts_differ_beyond_what_the_accuracy_promises() {
+    fn starts_differ_beyond_the_promise_of_the_accuracy() {
         // 5 % of the size at node 20, 4 % of the deviation at node 10.
         let (own, other) = ([[1e-3, 0.96e-3], [0.95e-3, 1e-3]], [[0.99e-3, 1e-3], [1e-3, 1e-3]]);
         let standard = compared(&own, &other, AccuracyPreset::Standard);

@@ -68,7 +68,8 @@ pub struct TransientSummary {
     /// Contacts of all nodes together.
     pub contact_count: u64,
     /// Number of slip-to-stick transitions, summed over all nodes.
-    pub capture_count: u64,
+    #[serde(rename = "capture_count")]
+    pub slip_to_stick_count: u64,
     /// Largest normal force of any node \[N\].
     pub largest_normal_force: f64,
     /// Estimated error of the lateral displacements.
@@ -245,7 +246,7 @@ impl TransientSummary {
             spectra,
             resolved_hz: records.effort.resolved_hz,
             unresolved_steps: records.effort.unresolved_steps,
-            capture_count: records.contacts.iter().map(|contact| contact.capture_count).sum(),
+            slip_to_stick_count: records.contacts.iter().map(|contact| contact.slip_to_stick_count).sum(),
             contact_count: records.contacts.iter().map(|contact| contact.contact_count).sum(),
             largest_normal_force: records
                 .contacts
@@ -355,7 +356,7 @@ impl TransientSummary {
             resolved_hz: 0.0,
             unresolved_steps: 0,
             contact_count: 0,
-            capture_count: 0,
+            slip_to_stick_count: 0,
             largest_normal_force: 0.0,
             error_estimate: ErrorEstimate { displacement: 0.0, relative: 0.0 },
             energy_residual: 0.0,

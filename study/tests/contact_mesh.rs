@@ -360,7 +360,7 @@ fn base_case_in(stations: &[[f64; 3]]) -> Scenario {
 }
 
 #[test]
-fn automatic_mesh_rests_where_a_fine_one_does() {
+fn automatic_mesh_has_the_equilibrium_of_a_fine_one() {
     for (name, stations) in [
         ("base case", &[][..]),
         ("horizontal", &[[0.0, 85.0, 0.0], [80.0, 90.0, 0.0], [200.0, 88.0, 0.0]]),

@@ -12,7 +12,7 @@ use drillsweep_sim::solve::statics::Equilibrium;
 const DURATION: f64 = 0.5;
 
 /// The calibration scenarios: the paper's string, with changes that determine the smoothness of its motion.
-fn scenes() -> Vec<(&'static str, Scenario)> {
+fn scenarios() -> Vec<(&'static str, Scenario)> {
     let mut base = preset("paper-200m").expect("shipped preset");
     base.duration = DURATION;
     base.recording.spectrum_windows = Some(Vec::new());
@@ -80,7 +80,7 @@ fn estimate_covers_the_true_error_without_being_far_too_large() {
         TimeStepping::fixed(Integrator::Esdirk4, 2.5e-4),
     ];
     let ratios: Vec<(String, f64)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = scenes()
+        let workers: Vec<_> = scenarios()
             .into_iter()
             .map(|(name, scenario)| {
                 scope.spawn(move || {
@@ -114,9 +114,9 @@ fn estimate_covers_the_true_error_without_being_far_too_large() {
 
 #[test]
 fn estimate_of_rk4_covers_the_true_error() {
-    let scenes = scenes();
+    let scenarios = scenarios();
     for wanted in ["base case", "frictionless"] {
-        let (name, scenario) = scenes.iter().find(|(name, _)| *name == wanted).expect("is there");
+        let (name, scenario) = scenarios.iter().find(|(name, _)| *name == wanted).expect("is there");
         let scenario = Scenario { duration: 0.1, ..scenario.clone() };
         let reference = run(&scenario, TimeStepping::fixed(Integrator::Rk4, 1e-5));
         let records = run(&scenario, TimeStepping::fixed(Integrator::Rk4, 5e-5));

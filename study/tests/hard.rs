@@ -18,16 +18,16 @@ use drillsweep_study::cost::Measure;
 use drillsweep_study::finer::{Verdict, ask};
 
 /// A hard scenario with its run.
-struct Scene {
+struct ScenarioRun {
     model: Model,
     equilibrium: Equilibrium,
     records: Records,
 }
 
-impl Scene {
+impl ScenarioRun {
     /// Runs a preset and checks the properties of every scenario: finite numbers, a ledger far within its bound, and no node deeper in the wall
     /// than its largest force can push it.
-    fn run(name: &str) -> Self {
+    fn of_preset(name: &str) -> Self {
         Self::of(&preset(name).expect("shipped preset"))
     }
 
@@ -39,10 +39,10 @@ impl Scene {
             Ok(Outcome::Finished(records)) => *records,
             other => panic!("{}: {other:?}", scenario.name),
         };
-        let scene = Self { model, equilibrium, records };
-        let last = scene.last();
-        assert!(last.residual.abs() < 0.1 * scene.records.energy_bound, "{}: {last:?}", scenario.name);
-        for history in &scene.records.histories {
+        let run = Self { model, equilibrium, records };
+        let last = run.last();
+        assert!(last.residual.abs() < 0.1 * run.records.energy_bound, "{}: {last:?}", scenario.name);
+        for history in &run.records.histories {
             assert!(
                 history
                     .u
@@ -53,7 +53,7 @@ impl Scene {
             );
         }
         let contact = &scenario.contact;
-        let nodes = scene.model.mesh.nodes.iter().zip(&scene.records.contacts).skip(1);
+        let nodes = run.model.mesh.nodes.iter().zip(&run.records.contacts).skip(1);
         // Along an element the penetration at an end is not bounded by the end's share of the force.
         for (node, contacts) in nodes.filter(|(node, _)| node.stiffness_share > 0.0) {
             // Half the stiffness at least, and the damper's part of the force is on the way in.
@@ -61,7 +61,7 @@ impl Scene {
             let penetration = contacts.largest_radius() - node.clearance;
             assert!(penetration <= deepest + 1e-9, "{}: {penetration} m for {contacts:?}", scenario.name);
         }
-        scene
+        run
     }
 
     fn last(&self) -> EnergyRow {
@@ -121,14 +121,14 @@ fn with_method(name: &str, duration: f64, integrator: Integrator, step: f64) -> 
 
 /// Runs a scenario over a shorter time by ESDIRK4 and by generalized-alpha: two methods with nothing in common but the model agree.
 fn methods_agree(name: &str, duration: f64, largest_distance: f64) {
-    let a = Scene::of(&with_method(name, duration, Integrator::Esdirk4, 5e-4));
-    let b = Scene::of(&with_method(name, duration, Integrator::GeneralizedAlpha, 1.25e-4));
+    let a = ScenarioRun::of(&with_method(name, duration, Integrator::Esdirk4, 5e-4));
+    let b = ScenarioRun::of(&with_method(name, duration, Integrator::GeneralizedAlpha, 1.25e-4));
     let apart = distance(&b.records, &a.records);
     assert!(apart < largest_distance, "{name}: {apart}");
 }
 
 #[test]
-fn every_hard_scene_ships_with_its_reason() {
+fn every_hard_scenario_ships_with_its_reason() {
     let hard = PRESETS.iter().filter(|(name, _)| name.starts_with("hard/"));
     assert!(hard.clone().count() >= 25);
     for (name, description) in hard {
@@ -144,7 +144,7 @@ fn every_hard_scene_ships_with_its_reason() {
 const ASKED_OVER: [(&str, f64); 1] = [("hard/high-frequency-torsion", 0.5)];
 
 #[test]
-fn a_finer_step_says_the_same_of_every_hard_scene() {
+fn a_finer_step_confirms_every_hard_scenario() {
     let verdict = |name: &str| {
         let mut scenario = preset(name).expect("shipped preset");
         if let Some((_, duration)) = ASKED_OVER.iter().find(|(asked, _)| *asked == name) {
@@ -152,9 +152,9 @@ fn a_finer_step_says_the_same_of_every_hard_scene() {
             scenario.recording.orbit_window = None;
             scenario.recording.spectrum_windows = Some(Vec::new());
         }
-        let scene = Scene::of(&scenario);
-        let own = Measure::new(&scene.model, &scene.equilibrium, &scene.records, 0);
-        ask(&own, &scene.model, &scene.equilibrium, &Control::new())
+        let run = ScenarioRun::of(&scenario);
+        let own = Measure::new(&run.model, &run.equilibrium, &run.records, 0);
+        ask(&own, &run.model, &run.equilibrium, &Control::new())
     };
     let hard = || PRESETS.iter().map(|(name, _)| *name).filter(|name| name.starts_with("hard/"));
     let verdicts: Vec<_> = std::thread::scope(|scope| {
@@ -184,8 +184,8 @@ fn a_finer_step_says_the_same_of_every_hard_scene() {
 
 #[test]
 fn tight_gauge_holds_its_nodes() {
-    let scene = Scene::run("hard/tight-gauge");
-    for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
+    let run = ScenarioRun::of_preset("hard/tight-gauge");
+    for (node, contacts) in run.model.mesh.nodes.iter().zip(&run.records.contacts) {
         // 1e-5 m of clearance, and the penetration by 20 kN at 1e9 N/m.
         assert!(!node.is_gauge || contacts.largest_radius() < 1e-5 + 4e-5, "{contacts:?}");
     }
@@ -224,7 +224,7 @@ fn gauges_without_play_are_held_in_any_direction() {
     // The wall holds such a node sideways as stiffly as outwards: F_n / r is its whole stiffness.
     let draft = Accuracy::Preset(AccuracyPreset::Draft);
     let fixed = |integrator, step| Accuracy::Explicit(TimeStepping::fixed(integrator, step));
-    let scenes = [
+    let scenarios = [
         without_play("paper-200m", false, true, 1e4, draft, 0.5),
         without_play("hard/horizontal", false, false, 0.0, draft, 0.5),
         without_play("paper-200m-damped", true, true, 1e4, draft, 0.5),
@@ -232,27 +232,27 @@ fn gauges_without_play_are_held_in_any_direction() {
         without_play("paper-200m-damped", true, true, 1e4, fixed(Integrator::GeneralizedAlpha, 1e-3), 0.2),
         without_play("paper-200m-damped", true, false, 0.0, fixed(Integrator::Rk4, 2e-5), 0.1),
     ];
-    for scenario in scenes {
-        let scene = Scene::of(&scenario);
-        for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
+    for scenario in scenarios {
+        let run = ScenarioRun::of(&scenario);
+        for (node, contacts) in run.model.mesh.nodes.iter().zip(&run.records.contacts) {
             // Penetration by 50 kN at 1e9 N/m.
             assert!(!node.is_gauge || contacts.largest_radius() < 5e-5, "{}: {contacts:?}", scenario.name);
         }
         // Contact that does not converge cuts steps, and moves a string that nothing moves.
-        let effort = &scene.records.effort;
+        let effort = &run.records.effort;
         if scenario.accuracy == draft {
             let fewest = scenario.duration / effort.step_range[1];
             assert!((effort.steps as f64) < 1.1 * fewest + 10.0, "{}: {effort:?}", scenario.name);
         }
         if scenario.operation.rotation_speed_rpm == 0.0 {
-            let last = scene.last();
-            assert!(last.kinetic < scene.records.energy_rounding, "{}: {last:?}", scenario.name);
+            let last = run.last();
+            assert!(last.kinetic < run.records.energy_rounding, "{}: {last:?}", scenario.name);
         }
     }
 }
 
 #[test]
-fn steps_shorten_where_the_ledger_opens() {
+fn steps_shorten_as_the_ledger_opens() {
     // Only the steps take energy from the vibrations in a wall of 1e9 N/m, and local errors do not show it: with steps of 1 ms
     // throughout the run ends by its ledger after 1.8 s. A second method at a fiftieth of the step has nothing to shorten.
     let ended = |accuracy| {
@@ -283,7 +283,7 @@ fn steps_shorten_where_the_ledger_opens() {
 }
 
 #[test]
-fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
+fn a_string_at_rest_costs_at_most_a_few_times_a_turning_one() {
     let effort = |turns: bool| {
         let mut scenario = preset("paper-200m").expect("shipped preset");
         if !turns {
@@ -291,7 +291,7 @@ fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
         }
         (scenario.duration, scenario.accuracy) = (2.0, Accuracy::Preset(AccuracyPreset::Draft));
         (scenario.recording.spectrum_windows, scenario.recording.orbit_window) = (Some(Vec::new()), None);
-        Scene::of(&scenario).records.effort
+        ScenarioRun::of(&scenario).records.effort
     };
     let (rest, turning) = (effort(false), effort(true));
     // Friction that sticks is a stiff damper, with which contact iterations converge at a quarter of the step. With a longest step that much shorter
@@ -302,13 +302,13 @@ fn a_string_at_rest_costs_a_few_times_as_much_as_a_turning_one_and_no_more() {
 }
 
 #[test]
-fn stiff_contact_is_solved_alike_by_two_methods() {
+fn two_methods_agree_on_stiff_contact() {
     methods_agree("hard/stiff-contact-10", 0.2, 0.02);
     methods_agree("hard/stiff-contact-100", 0.05, 0.02);
     // A stiffer wall is penetrated less, by the same force.
     let deepest = |name: &str| {
-        let scene = Scene::run(name);
-        let nodes = scene.model.mesh.nodes.iter().zip(&scene.equilibrium.displacement);
+        let run = ScenarioRun::of_preset(name);
+        let nodes = run.model.mesh.nodes.iter().zip(&run.equilibrium.displacement);
         nodes.map(|(node, x)| x[0].hypot(x[1]) - node.clearance).fold(0.0, f64::max)
     };
     let ratio = deepest("hard/stiff-contact-10") / deepest("hard/stiff-contact-100");
@@ -316,10 +316,10 @@ fn stiff_contact_is_solved_alike_by_two_methods() {
 }
 
 #[test]
-fn sharp_friction_stays_within_what_friction_can_do() {
-    let scene = Scene::run("hard/sharp-friction");
-    let torque = -scene.equilibrium.torque[0];
-    let most = scene.friction_torque() - scene.model.scenario.operation.torque_on_bit;
+fn sharp_friction_stays_within_the_bound_of_friction() {
+    let run = ScenarioRun::of_preset("hard/sharp-friction");
+    let torque = -run.equilibrium.torque[0];
+    let most = run.friction_torque() - run.model.scenario.operation.torque_on_bit;
     // The chords of a curved hole leak a little.
     assert!(torque <= most * 1.000_1, "{torque} N m against {most} N m");
     methods_agree("hard/sharp-friction", 0.3, 0.05);
@@ -328,10 +328,10 @@ fn sharp_friction_stays_within_what_friction_can_do() {
 #[test]
 fn dry_friction_whirl_ends_below_rolling_without_slip() {
     // A node that rolls along the wall without slip whirls at -Omega R / j0; friction can drive it no faster.
-    let scene = Scene::run("hard/dry-friction-whirl");
-    let history = scene.records.histories.last().expect("recorded");
-    let node = &scene.model.mesh.nodes[history.node];
-    let bound = -scene.model.rotation_speed * node.contact_radius / node.clearance;
+    let run = ScenarioRun::of_preset("hard/dry-friction-whirl");
+    let history = run.records.histories.last().expect("recorded");
+    let node = &run.model.mesh.nodes[history.node];
+    let bound = -run.model.rotation_speed * node.contact_radius / node.clearance;
     let late = history.u.len() / 2..history.u.len();
     let speeds: Vec<f64> = late
         .filter_map(|i| {
@@ -348,16 +348,16 @@ fn dry_friction_whirl_ends_below_rolling_without_slip() {
 
 #[test]
 fn stick_slip_stops_and_breaks_loose() {
-    let scene = Scene::run("hard/stick-slip");
-    let omega = scene.model.rotation_speed;
-    let bit = scene.records.histories.last().expect("recorded");
+    let run = ScenarioRun::of_preset("hard/stick-slip");
+    let omega = run.model.rotation_speed;
+    let bit = run.records.histories.last().expect("recorded");
     let late = &bit.theta_z_rate[bit.theta_z_rate.len() / 2..];
     let slowest = late.iter().fold(f64::INFINITY, |least, rate| least.min((omega + rate).abs()));
     let fastest = late.iter().fold(0.0_f64, |most, rate| most.max(omega + rate));
     assert!(slowest < 0.02 * omega, "the bit stops: {slowest} rad/s");
     // A stop that ends in slip at about twice the mean speed is the classical picture (Brett 1992).
     assert!(fastest > 1.5 * omega, "and breaks loose: {fastest} rad/s");
-    let verdict = scene.verdict();
+    let verdict = run.verdict();
     let unstable = verdict.instability.expect("is unstable");
     assert_eq!(unstable.kind, InstabilityKind::StickSlip, "{verdict}");
 }
@@ -378,10 +378,10 @@ fn line(samples: &[f64], rate_hz: f64, from: f64, frequency_hz: f64) -> (f64, f6
 
 #[test]
 fn high_frequency_torsion_grows_as_its_eigenvalue_says() {
-    let scene = Scene::run("hard/high-frequency-torsion");
-    let torsion = UndampedTorsion::about(&scene.model, &scene.equilibrium).expect("twist takes part");
+    let run = ScenarioRun::of_preset("hard/high-frequency-torsion");
+    let torsion = UndampedTorsion::about(&run.model, &run.equilibrium).expect("twist takes part");
     let highest = torsion.highest_hz.expect("modes grow");
-    assert!(!torsion.up_to_the_mesh && torsion.warning(scene.records.effort.resolved_hz).is_none());
+    assert!(!torsion.up_to_the_mesh && torsion.warning(run.records.effort.resolved_hz).is_none());
     // The standing wave of a row of equal pipes with an antinode in the middle of every joint and every body: twist and torque go
     // over into each other where tan(k b / 2) = -z tan(k j / 2), with bodies of 8.9 m, joints of 0.6 m and z the ratio of their
     // polar moments (Floquet). Nine pipes are no endless row, and linear elements are (k h)^2 / 24 too stiff, 3 % here.
@@ -393,18 +393,18 @@ fn high_frequency_torsion_grows_as_its_eigenvalue_says() {
         let k = 0.5 * (low + high);
         if (0.5 * k * body).tan() + z * (0.5 * k * joint).tan() < 0.0 { low = k } else { high = k }
     }
-    let material = scene.model.scenario.string.material;
+    let material = run.model.scenario.string.material;
     let shear = material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
     let standing = low * (shear / material.density).sqrt() / TAU;
     assert!((highest / standing - 1.0).abs() < 0.03, "{highest} Hz against {standing} Hz");
 
     // All motion together, linearised, against the history.
     let search = ModeSearch { from_hz: highest - 1.0, to_hz: highest + 1.0, ..ModeSearch::default() };
-    let found = modes(&scene.model, &scene.equilibrium, &search).expect("found").modes;
+    let found = modes(&run.model, &run.equilibrium, &search).expect("found").modes;
     let mode = found.iter().find(|mode| mode.kind == ModeKind::Torsional).expect("there is one");
     assert!((mode.frequency_hz / highest - 1.0).abs() < 1e-3 && mode.growth_rate > 0.0, "{mode:?}");
-    let history = scene.records.histories.last().expect("node 49");
-    let at = |from| line(&history.theta_z_rate, scene.records.rate_hz, from, mode.frequency_hz);
+    let history = run.records.histories.last().expect("node 49");
+    let at = |from| line(&history.theta_z_rate, run.records.rate_hz, from, mode.frequency_hz);
     let ((early, early_phase), (late, late_phase)) = (at(0.0), at(1.5));
     // Neighbours are 6 Hz away, three times the resolution, where Hann's sidelobes are below 0.01: 2 % of the ratio.
     let growth = (late / early).ln() / 1.5;
@@ -417,7 +417,7 @@ fn high_frequency_torsion_grows_as_its_eigenvalue_says() {
 
 #[test]
 fn thrown_string_keeps_its_energy_balance_without_mud() {
-    let last = Scene::run("hard/dry-unbalance-150").last();
+    let last = ScenarioRun::of_preset("hard/dry-unbalance-150").last();
     assert!(last["work_unbalance"] > 10.0 && last["dissipated_contact"] > 0.0);
     assert_eq!(last["dissipated_fluid"], 0.0);
     assert!(last.residual.abs() < 0.02 * last.turned_over(), "{last:?}");
@@ -425,42 +425,42 @@ fn thrown_string_keeps_its_energy_balance_without_mud() {
 
 #[test]
 fn nothing_moves_without_rotation() {
-    let scene = Scene::run("hard/no-rotation");
-    assert!(scene.equilibrium.torque.iter().all(|torque| torque.abs() < 1e-6), "no torque");
-    for contacts in &scene.records.contacts {
+    let run = ScenarioRun::of_preset("hard/no-rotation");
+    assert!(run.equilibrium.torque.iter().all(|torque| torque.abs() < 1e-6), "no torque");
+    for contacts in &run.records.contacts {
         assert!(contacts.contact_count <= 1, "contacts neither open nor close: {contacts:?}");
     }
-    assert!(scene.last().turned_over() < 1e-6, "{:?}", scene.last());
-    assert!(scene.verdict().stable == Some(true));
+    assert!(run.last().turned_over() < 1e-6, "{:?}", run.last());
+    assert!(run.verdict().stable == Some(true));
 }
 
 #[test]
 fn slow_rotation_creeps_as_a_damper_does() {
-    let scene = Scene::run("hard/slow-rotation");
+    let run = ScenarioRun::of_preset("hard/slow-rotation");
     // Static friction lets go at the start, and the string unwinds against friction that grows with speed: monotonically.
-    for history in &scene.records.histories {
+    for history in &run.records.histories {
         assert!(history.theta_z_rate.iter().all(|&rate| rate > -1e-3), "node {}", history.node + 1);
     }
-    let last = scene.last();
+    let last = run.last();
     assert!(last.kinetic < 1e-2 * last.turned_over(), "what is stored goes into friction: {last:?}");
-    assert!(scene.verdict().stable == Some(true));
+    assert!(run.verdict().stable == Some(true));
 }
 
 /// Dawson and Paslay's load of sinusoidal buckling \[N\] of a horizontal string.
-fn sinusoidal_load(scene: &Scene) -> f64 {
-    let node = &scene.model.mesh.nodes[50];
-    let stiffness = scene.model.elements[50].beam.section().bending_stiffness();
-    let weight = scene.buoyed_weight() / scene.model.mesh.length();
+fn sinusoidal_load(run: &ScenarioRun) -> f64 {
+    let node = &run.model.mesh.nodes[50];
+    let stiffness = run.model.elements[50].beam.section().bending_stiffness();
+    let weight = run.buoyed_weight() / run.model.mesh.length();
     2.0 * (stiffness * weight / node.clearance).sqrt()
 }
 
 #[test]
 fn buckling_on_the_low_side_begins_at_dawson_and_paslays_load() {
-    let near = Scene::run("hard/near-buckling");
+    let near = ScenarioRun::of_preset("hard/near-buckling");
     let load = -near.model.scenario.operation.weight_on_bit;
     assert!((0.65..0.75).contains(&(load / sinusoidal_load(&near))), "{}", sinusoidal_load(&near));
     assert!(near.verdict().stable == Some(true), "{}", near.verdict());
-    let beyond = Scene::run("hard/beyond-buckling");
+    let beyond = ScenarioRun::of_preset("hard/beyond-buckling");
     let load = -beyond.model.scenario.operation.weight_on_bit;
     // Helical buckling at sqrt 2 times the sinusoidal load (Chen, Lin and Cheatham 1990).
     assert!(load > 2.0_f64.sqrt() * sinusoidal_load(&beyond));
@@ -475,18 +475,18 @@ fn buckling_on_the_low_side_begins_at_dawson_and_paslays_load() {
 
 #[test]
 fn torque_near_greenhills_is_carried_as_static_twist() {
-    let scene = Scene::run("hard/torque-near-greenhill");
-    let section = *scene.model.elements[0].beam.section();
-    let length = scene.model.mesh.length();
+    let run = ScenarioRun::of_preset("hard/torque-near-greenhill");
+    let section = *run.model.elements[0].beam.section();
+    let length = run.model.mesh.length();
     let greenhill = 2.0 * PI * section.bending_stiffness() / length;
-    let torque = -scene.model.scenario.operation.torque_on_bit;
+    let torque = -run.model.scenario.operation.torque_on_bit;
     assert!((0.9..1.0).contains(&(torque / greenhill)), "{greenhill}");
     // T L / G I_p.
     let twist = -torque * length / (section.shear_modulus * section.polar_moment());
-    let found = scene.equilibrium.displacement.last().expect("the bit")[5];
+    let found = run.equilibrium.displacement.last().expect("the bit")[5];
     assert!((found / twist - 1.0).abs() < 1e-9, "{found} against {twist}");
     // The bit hangs free in its gauge, and torque that follows a free end is not conservative.
-    let unstable = scene.verdict().instability.expect("is unstable");
+    let unstable = run.verdict().instability.expect("is unstable");
     assert_eq!(unstable.kind, InstabilityKind::TorqueBuckling);
 }
 
@@ -494,7 +494,7 @@ fn torque_near_greenhills_is_carried_as_static_twist() {
 fn two_methods_agree_at_every_flow() {
     methods_agree("hard/flow-0.2", 0.3, 0.02);
     methods_agree("hard/no-flow", 0.3, 0.02);
-    let still = Scene::run("hard/no-flow");
+    let still = ScenarioRun::of_preset("hard/no-flow");
     // Still mud has the pressure of its depth.
     let pressures = still.equilibrium.pressures.as_ref().expect("there is mud");
     for (pressure, frame) in pressures.annulus.iter().zip(&still.model.frames) {
@@ -509,8 +509,8 @@ fn two_methods_agree_at_every_flow() {
 
 #[test]
 fn free_span_beyond_the_critical_flow_is_reported_as_unstable() {
-    let scene = Scene::run("hard/flow-flutter");
-    let verdict = scene.verdict();
+    let run = ScenarioRun::of_preset("hard/flow-flutter");
+    let verdict = run.verdict();
     let unstable = verdict.instability.expect("is unstable");
     // A hanging pipe conveying fluid flutters (Paidoussis 1998, chapter 3).
     assert_eq!(unstable.kind, InstabilityKind::FlowFlutter, "{verdict}");
@@ -518,12 +518,12 @@ fn free_span_beyond_the_critical_flow_is_reported_as_unstable() {
     // It is the flow: without it the pipe hangs still.
     let mut still = preset("hard/flow-flutter").expect("shipped preset");
     still.mud.as_mut().expect("there is mud").flow_rate = 0.0;
-    assert!(Scene::of(&still).verdict().stable == Some(true));
+    assert!(ScenarioRun::of(&still).verdict().stable == Some(true));
 }
 
 #[test]
 fn light_and_heavy_mud_bear_on_the_wall_by_their_buoyancy() {
-    let [light, heavy] = ["hard/light-mud", "hard/heavy-mud"].map(Scene::run);
+    let [light, heavy] = ["hard/light-mud", "hard/heavy-mud"].map(ScenarioRun::of_preset);
     let (by_wall, by_weight) =
         (heavy.normal_force() / light.normal_force(), heavy.buoyed_weight() / light.buoyed_weight());
     assert!(by_wall < 1.0 && by_wall > by_weight, "{by_wall} against {by_weight} of the weight alone");
@@ -533,19 +533,19 @@ fn light_and_heavy_mud_bear_on_the_wall_by_their_buoyancy() {
 #[test]
 fn straight_holes_carry_the_buoyed_weight() {
     // Vertical: all of it hangs on the top. At 120 degrees half of it pushes the top's tension down.
-    let vertical = Scene::run("hard/vertical");
-    let inverted = Scene::run("hard/inverted");
-    for (scene, along) in [(&vertical, 1.0), (&inverted, (120.0_f64).to_radians().cos())] {
+    let vertical = ScenarioRun::of_preset("hard/vertical");
+    let inverted = ScenarioRun::of_preset("hard/inverted");
+    for (run, along) in [(&vertical, 1.0), (&inverted, (120.0_f64).to_radians().cos())] {
         let drag: f64 =
-            scene.equilibrium.drag.iter().zip(&scene.model.mesh.elements).map(|(d, e)| d * e.length).sum();
-        let expected = scene.buoyed_weight() * along + scene.model.scenario.operation.weight_on_bit - drag;
-        let half = 0.5 * scene.model.mesh.elements[0].length / scene.model.mesh.length();
-        let found = scene.equilibrium.tension[0];
-        let tolerance = half * scene.buoyed_weight() + 1.0;
+            run.equilibrium.drag.iter().zip(&run.model.mesh.elements).map(|(d, e)| d * e.length).sum();
+        let expected = run.buoyed_weight() * along + run.model.scenario.operation.weight_on_bit - drag;
+        let half = 0.5 * run.model.mesh.elements[0].length / run.model.mesh.length();
+        let found = run.equilibrium.tension[0];
+        let tolerance = half * run.buoyed_weight() + 1.0;
         assert!((found - expected).abs() < 2.0 * tolerance, "{found} N against {expected} N");
     }
     // Horizontal: the wall carries the weight, but for the force of the clamped top.
-    let horizontal = Scene::run("hard/horizontal");
+    let horizontal = ScenarioRun::of_preset("hard/horizontal");
     let up: f64 = horizontal
         .equilibrium
         .normal_force
@@ -564,25 +564,25 @@ fn straight_holes_carry_the_buoyed_weight() {
 #[test]
 fn sharp_doglegs_press_the_string_to_the_wall() {
     // At least compression times curvature (capstan), 100 kN at 0.0116 1/m over 200 m.
-    let scene = Scene::run("hard/dogleg-20");
+    let run = ScenarioRun::of_preset("hard/dogleg-20");
     let curvature = (20.0_f64).to_radians() / 30.0;
-    let compression = -scene.equilibrium.tension.iter().fold(f64::NEG_INFINITY, |most, t| most.max(*t));
+    let compression = -run.equilibrium.tension.iter().fold(f64::NEG_INFINITY, |most, t| most.max(*t));
     let capstan = compression * curvature * 150.0;
-    assert!(scene.normal_force() > capstan, "{} against {capstan}", scene.normal_force());
+    assert!(run.normal_force() > capstan, "{} against {capstan}", run.normal_force());
     methods_agree("hard/dogleg-20", 0.3, 0.03);
 }
 
 #[test]
 fn one_element_agrees_with_the_explicit_method() {
-    let implicit = Scene::of(&with_method("hard/one-element", 0.5, Integrator::Esdirk4, 2.5e-4));
-    let explicit = Scene::of(&with_method("hard/one-element", 0.5, Integrator::Rk4, 2e-5));
+    let implicit = ScenarioRun::of(&with_method("hard/one-element", 0.5, Integrator::Esdirk4, 2.5e-4));
+    let explicit = ScenarioRun::of(&with_method("hard/one-element", 0.5, Integrator::Rk4, 2e-5));
     let apart = distance(&implicit.records, &explicit.records);
     assert!(apart < 0.02, "{apart}");
 }
 
 #[test]
 fn five_thousand_elements_rest_as_four_hundred_do() {
-    let fine = Scene::run("hard/elements-5000");
+    let fine = ScenarioRun::of_preset("hard/elements-5000");
     assert!(fine.model.elements.len() >= 5000);
     let mut scenario = preset("hard/elements-5000").expect("shipped preset");
     let lengths = scenario.mesh.lengths_mut().expect("has target lengths");
@@ -597,27 +597,27 @@ fn five_thousand_elements_rest_as_four_hundred_do() {
 
 #[test]
 fn ten_kilometres_hang_from_the_top() {
-    let scene = Scene::run("hard/length-10km");
+    let run = ScenarioRun::of_preset("hard/length-10km");
     // Without the wall's axial friction, tension falls by the buoyed weight's component along the hole.
-    let weight = scene.buoyed_weight();
-    let depth = scene.model.frames.last().expect("the bit").position.z;
+    let weight = run.buoyed_weight();
+    let depth = run.model.frames.last().expect("the bit").position.z;
     let drag: f64 =
-        scene.equilibrium.drag.iter().zip(&scene.model.mesh.elements).map(|(d, e)| d * e.length).sum();
+        run.equilibrium.drag.iter().zip(&run.model.mesh.elements).map(|(d, e)| d * e.length).sum();
     let expected =
-        weight * depth / scene.model.mesh.length() - drag + scene.model.scenario.operation.weight_on_bit;
-    let found = scene.equilibrium.tension[0];
+        weight * depth / run.model.mesh.length() - drag + run.model.scenario.operation.weight_on_bit;
+    let found = run.equilibrium.tension[0];
     // The collars at the bottom are heavier than the mean, on the flat part.
     assert!((found / expected - 1.0).abs() < 0.1, "{found} against {expected}");
 }
 
 #[test]
 fn wide_tool_joints_carry_the_string() {
-    let scene = Scene::run("hard/wide-tool-joint");
-    let joints = scene.model.mesh.nodes.iter().zip(&scene.equilibrium.normal_force);
+    let run = ScenarioRun::of_preset("hard/wide-tool-joint");
+    let joints = run.model.mesh.nodes.iter().zip(&run.equilibrium.normal_force);
     let carried: f64 = joints.filter(|(node, _)| node.clearance < 1.1e-3).map(|(_, force)| force).sum();
-    assert!(carried > 0.2 * scene.normal_force());
+    assert!(carried > 0.2 * run.normal_force());
     // No node is further out than its clearance and its penetration.
-    for (node, contacts) in scene.model.mesh.nodes.iter().zip(&scene.records.contacts) {
+    for (node, contacts) in run.model.mesh.nodes.iter().zip(&run.records.contacts) {
         if node.clearance < 1.1e-3 {
             assert!(contacts.largest_radius() < 1.1e-3 + 5e-3, "{contacts:?}");
         }
@@ -625,27 +625,23 @@ fn wide_tool_joints_carry_the_string() {
 }
 
 #[test]
-fn string_on_the_wall_weighs_what_it_weighs() {
-    let scene = Scene::run("hard/all-on-wall");
-    let touching = scene.equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count();
+fn wall_bears_the_weight_of_the_string() {
+    let run = ScenarioRun::of_preset("hard/all-on-wall");
+    let touching = run.equilibrium.normal_force.iter().filter(|&&force| force > 0.0).count();
     assert!(touching > 85, "{touching} of 100 nodes");
     // Normal force and its friction carry the weight together: N sqrt(1 + mu^2), less the force of the clamped end.
-    let mu = scene.model.scenario.contact.static_friction;
-    let carried = scene.normal_force() * (1.0 + mu * mu).sqrt();
-    assert!(
-        (carried / scene.buoyed_weight() - 1.0).abs() < 0.1,
-        "{carried} N of {} N",
-        scene.buoyed_weight()
-    );
+    let mu = run.model.scenario.contact.static_friction;
+    let carried = run.normal_force() * (1.0 + mu * mu).sqrt();
+    assert!((carried / run.buoyed_weight() - 1.0).abs() < 0.1, "{carried} N of {} N", run.buoyed_weight());
 }
 
 #[test]
 fn start_on_the_axis_responds_as_a_round_rotor() {
-    let scene = Scene::run("hard/on-axis");
+    let run = ScenarioRun::of_preset("hard/on-axis");
     // u and v are equivalent: the unbalance drives a whirl in its own sense, and the wall is not reached.
-    assert!(scene.equilibrium.displacement.iter().all(|x| x[0] == 0.0 && x[1] == 0.0));
-    assert!(scene.records.contacts.iter().all(|contacts| contacts.contact_count == 0));
-    let history = &scene.records.histories[0];
+    assert!(run.equilibrium.displacement.iter().all(|x| x[0] == 0.0 && x[1] == 0.0));
+    assert!(run.records.contacts.iter().all(|contacts| contacts.contact_count == 0));
+    let history = &run.records.histories[0];
     let turned: f64 = (0..history.u.len())
         .map(|i| history.u[i] * history.v_rate[i] - history.v[i] * history.u_rate[i])
         .sum();
@@ -653,11 +649,11 @@ fn start_on_the_axis_responds_as_a_round_rotor() {
 }
 
 #[test]
-fn undamped_string_is_told_to_be_unstable() {
-    let scene = Scene::run("hard/undamped-flow-torque");
-    assert_eq!(scene.last()["dissipated_structure"], 0.0);
-    assert_eq!(scene.last()["dissipated_fluid"], 0.0);
-    let verdict = scene.verdict();
+fn undamped_string_is_reported_as_unstable() {
+    let run = ScenarioRun::of_preset("hard/undamped-flow-torque");
+    assert_eq!(run.last()["dissipated_structure"], 0.0);
+    assert_eq!(run.last()["dissipated_fluid"], 0.0);
+    let verdict = run.verdict();
     let unstable = verdict.instability.expect("nothing damps it");
     assert!(unstable.growing_modes > 20, "{unstable:?}");
     methods_agree("hard/undamped-flow-torque", 0.3, 0.03);

@@ -105,12 +105,12 @@ fn most_agree(preset: AccuracyPreset) {
 }
 
 #[test]
-fn a_finer_step_says_the_same_of_most_scenes_at_draft() {
+fn a_finer_step_confirms_most_scenarios_at_draft() {
     most_agree(AccuracyPreset::Draft);
 }
 
 #[test]
-fn a_finer_step_says_the_same_of_most_scenes_at_standard() {
+fn a_finer_step_confirms_most_scenarios_at_standard() {
     most_agree(AccuracyPreset::Standard);
 }
 

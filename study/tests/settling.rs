@@ -8,7 +8,7 @@ use drillsweep_sim::solve::run::{Checkpoint, MotionRegime, Outcome, Records, Tra
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_study::summary::TransientSummary;
 
-mod whole_run_scenes;
+mod whole_run_scenarios;
 
 fn settled(mut scenario: Scenario, longest: f64) -> Scenario {
     scenario.duration = longest;
@@ -40,7 +40,7 @@ fn run(scenario: &Scenario) -> (Records, TransientSummary) {
 }
 
 #[test]
-fn a_run_ends_when_it_has_settled_wherever_it_was_suspended() {
+fn a_suspended_run_ends_once_settled() {
     let scenario = shaft(300.0);
     let (whole, _) = run(&scenario);
     assert_eq!(whole.settling.regime, MotionRegime::Regular);
@@ -94,12 +94,12 @@ fn no_run_ends_before_its_fixed_windows_do() {
 /// orbits more than ten times as large. Two runs of 160 s together, since the settled motion comes late: 3 s.
 #[test]
 fn a_mode_that_grows_keeps_a_run_going_until_it_sticks_and_slips() {
-    let mut quiet = whole_run_scenes::reduced();
+    let mut quiet = whole_run_scenarios::reduced();
     quiet.operation.rotation_speed_rpm = 170.0;
     quiet.mud.as_mut().expect("mud").density = 1500.0;
     quiet.accuracy = Accuracy::Preset(AccuracyPreset::Draft);
     let (_, early) = run(&quiet);
-    assert_eq!((early.settling.regime, early.capture_count), (MotionRegime::Fixed, 0));
+    assert_eq!((early.settling.regime, early.slip_to_stick_count), (MotionRegime::Fixed, 0));
     let growing = early.settling.growing_mode.expect("still grows");
     assert!(growing.growth_rate > 0.04 && growing.growth_rate < 0.06, "{growing:?}");
     let (model, equilibrium) = at_rest(&quiet);
@@ -112,7 +112,7 @@ fn a_mode_that_grows_keeps_a_run_going_until_it_sticks_and_slips() {
 
     let (_, late) = run(&settled(quiet, 300.0));
     assert_eq!((late.settling.regime, late.settling.growing_mode), (MotionRegime::Regular, None));
-    assert!(late.simulated_time > 100.0 && late.capture_count > 1000, "{:?}", late.settling);
+    assert!(late.simulated_time > 100.0 && late.slip_to_stick_count > 1000, "{:?}", late.settling);
     for (early, late) in early.orbits.iter().zip(&late.orbits) {
         assert!(late.orbit_radius_rms > 10.0 * early.orbit_radius_rms, "{early:?} {late:?}");
     }

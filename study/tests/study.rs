@@ -107,7 +107,7 @@ fn two_methods_that_converge_make_a_reference_and_others_err_by_their_order() {
 }
 
 #[test]
-fn two_methods_that_are_too_coarse_make_no_reference_and_the_report_says_so() {
+fn two_too_coarse_methods_make_no_reference() {
     let coarse = |integrator| TimeStepping::fixed(integrator, 4e-2);
     let scenario = hanging(
         25.0,

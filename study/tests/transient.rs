@@ -143,7 +143,7 @@ fn rk4s_limit_is_the_axial_frequency_of_the_tool_joints() {
 }
 
 #[test]
-fn stiffer_contact_cuts_the_step_so_that_two_sweeps_stay_stable() {
+fn stiffer_contact_cuts_the_step_to_keep_two_iterations_stable() {
     let mut scenario = base(0.3, Integrator::GeneralizedAlpha, 5e-4);
     assert_eq!(run(&scenario).effort.subdivisions, 1);
     for (factor, least) in [(10.0, 2), (100.0, 4)] {
@@ -320,7 +320,7 @@ fn amplitude_at(values: &[f64], rate_hz: f64, from: f64, frequency_hz: f64) -> f
 }
 
 #[test]
-fn falling_friction_curve_makes_torsion_swing_up_to_stick_slip() {
+fn velocity_weakening_friction_excites_torsion_to_stick_slip() {
     let mut scenario = base(24.0, Integrator::GeneralizedAlpha, 5e-4);
     scenario.recording.nodes = vec![NodeChoice::Node(282)];
     let records = run(&scenario);
@@ -434,7 +434,7 @@ fn stiffness_by_length_makes_the_wall_the_same_for_every_mesh() {
 }
 
 #[test]
-fn falling_friction_drives_torsion_at_some_kilohertz_unless_something_damps_it() {
+fn velocity_weakening_friction_excites_undamped_torsion_at_some_kilohertz() {
     // Slow rotation lies on the steep part of the friction curve. At 0.0625 ms ESDIRK4 damps nothing at 3.7 kHz, the torsion of
     // single elements by the first collar, and the ledger shows it; a stiffness-proportional damping of 1e-6 s (0.3 % of critical at 1
     // kHz, 1e-5 of it at 2 Hz), or no friction torque, leaves it closed.

@@ -7,9 +7,9 @@ use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::run::{ContactStatistics, Outcome, Transient};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_study::errors::TimeError;
-use whole_run_scenes::{WholeRun, apart, reduced, scenes};
+use whole_run_scenarios::{WholeRun, apart, reduced, scenarios};
 
-mod whole_run_scenes;
+mod whole_run_scenarios;
 
 /// Scenarios whose friction is as steep as printed or steeper, walls as printed or ten times as hard.
 const HELD_TO_PROMISES: [&str; 6] =
@@ -18,7 +18,7 @@ const HELD_TO_PROMISES: [&str; 6] =
 #[test]
 fn presets_keep_their_promises_over_whole_runs() {
     let failures: Vec<String> = std::thread::scope(|scope| {
-        let held = scenes().into_iter().filter(|(name, _)| HELD_TO_PROMISES.contains(name));
+        let held = scenarios().into_iter().filter(|(name, _)| HELD_TO_PROMISES.contains(name));
         let workers: Vec<_> =
             held.map(|(name, scenario)| scope.spawn(move || check(name, &scenario))).collect();
         assert_eq!(workers.len(), HELD_TO_PROMISES.len());
@@ -29,8 +29,8 @@ fn presets_keep_their_promises_over_whole_runs() {
 
 fn check(name: &str, scenario: &Scenario) -> Vec<String> {
     let (rk4, fine) = (WholeRun::by_rk4(scenario), WholeRun::by_esdirk4(scenario, 5e-4));
-    let captures = |run: &WholeRun| run.records.contacts.iter().any(|node| node.capture_count > 0);
-    assert!(captures(&fine), "{name}: nothing sticks");
+    let sticks = |run: &WholeRun| run.records.contacts.iter().any(|node| node.slip_to_stick_count > 0);
+    assert!(sticks(&fine), "{name}: nothing sticks");
     let mut failures = Vec::new();
     // A reference exists if two methods agree within a third of the tightest bound.
     let agreement = apart(&fine, &rk4);
@@ -63,10 +63,10 @@ fn check(name: &str, scenario: &Scenario) -> Vec<String> {
 
 /// Only an ensemble distinguishes a scenario that amplifies disturbances from one that does not.
 #[test]
-fn an_ensemble_tells_where_the_error_of_steps_cannot_be_estimated() {
+fn an_ensemble_detects_steps_without_an_error_estimate() {
     let standard = Accuracy::Preset(AccuracyPreset::Standard);
     let runs = |name: &str| {
-        let (_, scenario) = scenes().into_iter().find(|(found, _)| *found == name).expect("is there");
+        let (_, scenario) = scenarios().into_iter().find(|(found, _)| *found == name).expect("is there");
         [0, 1].map(|member| WholeRun::of(&scenario, standard, member))
     };
     let [run, other] = runs("damping 1e-4 s");

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn missing_values_are_empty_and_what_needs_it_is_quoted() {
+    fn missing_values_are_empty_and_special_characters_quoted() {
         let table = Table::default()
             .with("node", Column::Integer(vec![Some(1), None]))
             .with("radius", Column::Number(vec![1e-7, f64::NAN]))

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn an_archive_that_is_sent_while_it_is_written_has_the_bytes_of_one_written_to_a_file() {
+    fn a_streamed_archive_equals_one_written_to_a_file() {
         let long: Vec<f64> = (0..100_000).map(f64::from).collect();
         let table = Table::default()
             .with("time", Column::Number(long.clone()))

@@ -110,7 +110,7 @@ pub static CONTACTS: Layout = Layout {
         &CONTACT_COUNT,
         &CONTACT_TIME,
         &LARGEST_NORMAL_FORCE,
-        &CAPTURE_COUNT,
+        &SLIP_TO_STICK_COUNT,
         &STICK_TIME,
     ],
     by_node: &[],

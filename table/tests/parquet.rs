@@ -142,7 +142,7 @@ fn floats_are_split_into_byte_streams_and_everything_is_compressed() {
 }
 
 #[test]
-fn what_is_not_such_a_table_is_an_error() {
+fn a_foreign_file_is_an_error() {
     let mut ragged = history(10);
     ragged.push("short", Column::Integer(vec![Some(1)]));
     let error = write(&ragged).unwrap_err();
@@ -155,7 +155,7 @@ fn what_is_not_such_a_table_is_an_error() {
 }
 
 #[test]
-fn what_is_missing_is_nan_or_empty() {
+fn missing_values_are_nan_or_empty() {
     let table = Table::default()
         .with("node", Column::Integer(vec![Some(1), None]))
         .with("error", Column::Text(vec![None, Some("diverged".to_owned())]));

@@ -81,7 +81,7 @@ fn a_part_of_a_stored_table_is_written_as_the_same_part_in_memory() {
 }
 
 #[test]
-fn what_is_no_column_is_refused() {
+fn an_unknown_column_is_refused() {
     let wider = Table::default().with("u_50", Column::Single(Vec::new()));
     assert!(matches!(stored(&history()).cut(wider, 0..1, 1), Err(TableError::OtherColumns)));
     let other_type = Table::default().with("time", Column::Single(Vec::new()));
@@ -106,7 +106,7 @@ impl ReadAt for Counted {
 }
 
 #[test]
-fn only_what_is_asked_for_is_read() {
+fn only_requested_columns_are_read() {
     let noise = |seed: u64| {
         let mut state = seed;
         let mut next = move || {

@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_diverges_tells_time_and_node_and_that_the_scene_is_unstable() {
+    fn a_diverging_run_reports_time_node_and_instability() {
         // Beyond flutter (Paidoussis 1998, chapter 3), with no wall to hold it.
         let mut scenario = preset("hard/flow-flutter").expect("shipped preset");
         scenario.duration = 30.0;
@@ -465,7 +465,7 @@ mod tests {
     }
 
     #[test]
-    fn torsion_that_grows_to_the_end_of_the_mesh_is_told_with_the_result() {
+    fn torsion_that_grows_to_the_end_of_the_mesh_has_a_warning() {
         let printed = briefly("paper-200m");
         let row = printed.summary_row();
         assert!(
@@ -489,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_have_the_columns_that_the_vocabulary_lists_and_rows_only_what_it_knows() {
+    fn tables_and_rows_have_columns_of_the_vocabulary_alone() {
         let computed = |outputs| {
             let mut scenario = damped();
             scenario.duration = 0.02;
@@ -536,7 +536,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_goes_on_from_wherever_it_was_suspended_with_all_its_samples() {
+    fn a_point_resumes_from_any_suspension_with_all_samples() {
         let mut scenario = damped();
         scenario.duration = 0.4;
         scenario.recording.spectrum_windows = Some(Vec::new());
@@ -605,7 +605,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bits_rotation_and_torque_are_recorded_whatever_nodes_are() {
+    fn rotation_and_torque_of_the_bit_are_always_recorded() {
         let of_bit = ["rotation_speed_297", "torque_297"];
         let history = |nodes: &[u32], outputs: Outputs, torsion: bool| {
             let mut scenario = damped();
@@ -690,7 +690,7 @@ mod tests {
     }
 
     #[test]
-    fn a_string_without_equilibrium_tells_where_and_at_the_start() {
+    fn a_string_without_equilibrium_reports_the_node_at_the_start() {
         // Without its wall the string buckles under the weight on bit.
         let mut scenario = preset("paper-200m").expect("shipped preset");
         scenario.effects.set(Effect::Contact, Switch::Off);

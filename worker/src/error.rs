@@ -23,7 +23,7 @@ pub enum ComputeError {
     #[error(transparent)]
     Statics(#[from] StaticsError),
     /// There is no equilibrium to start the second of two compared runs from.
-    #[error("the start with the friction {}: {error}", .friction.name())]
+    #[error("equilibrium of the start with friction {}: {error}", .friction.name())]
     OtherStart {
         /// Its friction.
         friction: StartFriction,
@@ -48,7 +48,7 @@ pub enum ComputeError {
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
     /// It takes more memory than this worker may have.
-    #[error("it takes about {:.1} GB of memory, and its worker may have {:.1} GB", *.needed as f64 / 1e9, *.limit as f64 / 1e9)]
+    #[error("it needs about {:.1} GB of memory; the worker's limit is {:.1} GB", *.needed as f64 / 1e9, *.limit as f64 / 1e9)]
     TooLarge {
         /// Memory that it takes \[bytes\].
         needed: u64,

@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_worker_of_many_short_points_is_heard_of() {
+    fn a_worker_of_many_short_points_sends_its_heartbeat() {
         let directory = tempfile::tempdir().unwrap();
         let config = StoreConfig::in_directory(directory.path(), Role::Worker);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();

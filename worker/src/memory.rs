@@ -31,7 +31,7 @@ impl Memory {
         (resident as f64 > NEARLY_FULL * limit as f64).then(|| {
             let gigabytes = |bytes: u64| bytes as f64 / 1e9;
             format!(
-                "held {:.1} GB of the {:.1} GB of memory it may have, and was probably ended for lack of memory",
+                "used {:.1} GB of its memory limit of {:.1} GB, and was probably killed for lack of memory",
                 gigabytes(resident),
                 gigabytes(limit)
             )
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_what_the_system_says() {
+    fn memory_equals_that_of_the_system() {
         let held = vec![1_u8; 64 << 20];
         let memory = Memory::now().unwrap();
         assert!(std::hint::black_box(&held).iter().all(|&byte| byte == 1));
@@ -63,6 +63,8 @@ mod tests {
     fn a_worker_that_is_nearly_full_says_so() {
         let memory = |resident| Memory { resident, limit: 16_000_000_000 };
         assert_eq!(memory(12_000_000_000).note(), None);
-        assert!(memory(15_000_000_000).note().unwrap().starts_with("held 15.0 GB of the 16.0 GB"));
+        assert!(
+            memory(15_000_000_000).note().unwrap().starts_with("used 15.0 GB of its memory limit of 16.0 GB")
+        );
     }
 }

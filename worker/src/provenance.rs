@@ -62,9 +62,11 @@ pub struct RunProvenance {
     /// Longest step taken \[s\].
     pub longest_step: f64,
     /// Contact iterations made.
-    sweeps: u64,
+    #[serde(rename = "sweeps")]
+    contact_iterations: u64,
     /// Largest change of a touching node's lateral displacement in the last iteration of any solve \[m\].
-    sweep_largest_change: f64,
+    #[serde(rename = "sweep_largest_change")]
+    largest_contact_change: f64,
     /// Solves whose contact iterations had not converged.
     loose_solves: u64,
     /// Estimated error of the history.
@@ -120,9 +122,9 @@ impl RunProvenance {
             unresolved_steps: effort.unresolved_steps,
             shortest_step: effort.step_range[0],
             longest_step: effort.step_range[1],
-            sweeps: effort.sweeps.sweeps,
-            sweep_largest_change: effort.sweeps.largest_change,
-            loose_solves: effort.sweeps.loose_solves,
+            contact_iterations: effort.contact_iterations.count,
+            largest_contact_change: effort.contact_iterations.largest_change,
+            loose_solves: effort.contact_iterations.loose_solves,
             error_estimate: records.error,
             error_estimate_of: ERROR_ESTIMATE_OF,
             resumed,

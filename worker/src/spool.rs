@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_kept_in_blocks_is_read_across_them() {
+    fn spooled_samples_are_read_across_blocks() {
         let directory = tempfile::tempdir().unwrap();
         let mut spool = Spool::new(directory.path()).unwrap();
         let whole = block(0, 100);

@@ -177,7 +177,7 @@ fn transient_row(transient: &TransientSummary) -> Row {
     row.put(&BIT_LINE_FREQUENCY_HZ, transient.bit_line.map(|line| line.frequency_hz));
     row.put(&BIT_LINE_AMPLITUDE, transient.bit_line.map(|line| line.amplitude));
     row.put(&CONTACT_COUNT, transient.contact_count);
-    row.put(&CAPTURE_COUNT, transient.capture_count);
+    row.put(&SLIP_TO_STICK_COUNT, transient.slip_to_stick_count);
     row.put(&RESOLVED_HZ, transient.resolved_hz);
     row.put(&UNRESOLVED_STEPS, transient.unresolved_steps);
     row.put(&LARGEST_NORMAL_FORCE, transient.largest_normal_force);
@@ -521,7 +521,7 @@ fn contacts<H>(model: &Model, records: &Records<H>) -> Table {
     integers(&mut table, &CONTACT_COUNT, contacts.iter().map(|c| c.contact_count as i64));
     numbers(&mut table, &CONTACT_TIME, contacts.iter().map(|c| c.contact_time));
     numbers(&mut table, &LARGEST_NORMAL_FORCE, contacts.iter().map(|c| c.largest_normal_force));
-    integers(&mut table, &CAPTURE_COUNT, contacts.iter().map(|c| c.capture_count as i64));
+    integers(&mut table, &SLIP_TO_STICK_COUNT, contacts.iter().map(|c| c.slip_to_stick_count as i64));
     numbers(&mut table, &STICK_TIME, contacts.iter().map(|c| c.stick_time));
     table
 }

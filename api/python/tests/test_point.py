@@ -50,7 +50,7 @@ def test_a_thinned_history_keeps_its_extremes(sweep: Sweep) -> None:
     assert (thinned["u_49"].min(), thinned["u_49"].max()) == (whole.min(), whole.max())
 
 
-def test_a_point_tells_its_plan_and_its_modes(sweep: Sweep) -> None:
+def test_a_point_has_its_plan_and_its_modes(sweep: Sweep) -> None:
     point = sweep.point(1)
     effects = {effect["effect"]: effect for effect in point.plan()["effects"]}
     assert effects["friction"]["active"]
@@ -75,7 +75,7 @@ def test_full_spectrum_is_the_transform_of_the_orbit(sweep: Sweep) -> None:
             assert peak["whirl"] == ("forward" if peak["frequency"] > 0.0 else "backward")
 
 
-def test_snapshots_are_what_the_histories_hold_of_every_node(client: Client) -> None:
+def test_snapshots_equal_the_histories_of_every_node(client: Client) -> None:
     changes = SHORT | {"recording.snapshots": {"rate_hz": 50, "window": {"from": 0.1, "to": 0.5}}}
     sweep = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}).wait(timeout=120.0)
     point = sweep.point(1)
@@ -133,7 +133,7 @@ def test_tables_come_as_arrays(sweep: Sweep) -> None:
     assert point.provenance["steps"] > 0
 
 
-def test_files_hold_what_the_arrays_hold(sweep: Sweep, tmp_path: Path) -> None:
+def test_files_equal_the_arrays(sweep: Sweep, tmp_path: Path) -> None:
     point = sweep.point(1)
     frame = polars.read_parquet(point.save("orbit", tmp_path / "orbit.parquet", node=49))
     np.testing.assert_array_equal(frame["u"].to_numpy(), point.orbit(node=49)["u"])
@@ -159,7 +159,7 @@ def test_orbit_is_drawn_low_side_down_in_the_holes_circle(sweep: Sweep) -> None:
     np.testing.assert_allclose(np.hypot(x, y), 1e3 * point.orbit(node=49)["radius"])
 
 
-def test_rotation_at_the_bit_is_drawn_from_what_has_it(client: Client, sweep: Sweep) -> None:
+def test_rotation_at_the_bit_is_drawn_from_history_or_snapshots(client: Client, sweep: Sweep) -> None:
     changes = SHORT | {"recording.nodes": [{"node": 296}, {"node": 297}]}
     recorded = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]})
     # Of chosen nodes alone the history is kept without the bit.

@@ -69,7 +69,7 @@ def test_a_sample_is_verified_by_the_reference(client: Client) -> None:
     assert client.run("paper-200m", set=SHORT, outputs="summary").verified is None
 
 
-def test_outputs_say_what_is_kept(client: Client) -> None:
+def test_outputs_select_the_kept_tables(client: Client) -> None:
     density = {**SHORT, "mud.density": 1350}
     run = client.run("paper-200m", set=density, outputs="summary").wait(timeout=120.0)
     summary = run.point(1).summary
@@ -79,7 +79,7 @@ def test_outputs_say_what_is_kept(client: Client) -> None:
         run.point(1).profile()
 
 
-def test_progress_is_told_and_drawn(client: Client) -> None:
+def test_progress_is_reported_and_drawn(client: Client) -> None:
     seen: list[float] = []
     stream = io.StringIO()
     bar = ProgressBar(stream)
@@ -100,15 +100,15 @@ def test_progress_is_told_and_drawn(client: Client) -> None:
     assert re.search(r"\[#{30}\] 100% 1 of 1 points, 0 running, \d:\d\d *\n$", stream.getvalue())
 
 
-def test_a_sweep_without_workers_says_what_it_waits_for(tmp_path: Path) -> None:
+def test_a_sweep_without_workers_reports_the_missing_version(tmp_path: Path) -> None:
     service = Service("serve", "--listen", "127.0.0.1:0", "--data", str(tmp_path))
     with Client(service.server) as client:
         run = client.run("paper-200m", set=SHORT)
-        assert "no worker has been heard of" in (run.waiting_for or "")
+        assert "no worker has sent a heartbeat" in (run.waiting_for or "")
         stream = io.StringIO()
         ProgressBar(stream).show(run)
         assert "0 running, waiting for a worker" in stream.getvalue()
-        with pytest.raises(TimeoutError, match="no worker has been heard of"):
+        with pytest.raises(TimeoutError, match="no worker has sent a heartbeat"):
             run.wait(timeout=0.2, progress=False)
     service.stop()
 
@@ -163,7 +163,7 @@ def test_a_sweep_is_paused_changed_found_extended_and_resumed(client: Client) ->
         client.sweep(sweep.id)
 
 
-def test_what_is_known_is_taken_or_computed_anew(client: Client, sweep: Sweep) -> None:
+def test_known_results_are_reused_or_recomputed(client: Client, sweep: Sweep) -> None:
     with pytest.raises(NoResult, match=r"1 of 2 points .*: 2$"):
         client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, 0.07]}, cache="only")
     known = client.run("paper-200m", set={**SHORT, "mud.density": 1200}, cache="only")
@@ -175,7 +175,7 @@ def test_what_is_known_is_taken_or_computed_anew(client: Client, sweep: Sweep) -
     assert after.summary == sweep.point(1).summary, "the same numbers, bit for bit"
 
 
-def test_everything_wrong_with_a_request_is_told_by_field(client: Client) -> None:
+def test_all_problems_of_a_request_are_reported_by_field(client: Client) -> None:
     with pytest.raises(InvalidRequest) as invalid:
         client.submit("paper-200m", axes={"flow_rate": [0.01, -1], "mud_density": Range(1200, 2100, 1)})
     problem = invalid.value
@@ -191,7 +191,7 @@ def test_everything_wrong_with_a_request_is_told_by_field(client: Client) -> Non
     assert parameter.value.errors[0].parameter == "colour"
 
 
-def test_what_is_not_there_is_told(client: Client, sweep: Sweep) -> None:
+def test_missing_resources_are_reported(client: Client, sweep: Sweep) -> None:
     with pytest.raises(NotFound):
         client.sweep("../../etc/passwd")
     with pytest.raises(NotFound):
@@ -241,7 +241,7 @@ def test_designs_make_the_points_that_they_should(client: Client) -> None:
     assert sobol.points == client.plan("paper-200m", design="sobol", samples=8, seed=3, axes=axes).points
 
 
-def test_events_tell_of_every_point_until_the_last_is_final(client: Client) -> None:
+def test_events_report_every_point_until_the_last_is_final(client: Client) -> None:
     axes: dict[str, Axis] = {"flow_rate": [0.015, 0.025], "mud_density": [1250, 1350]}
     succeeded: list[int] = []
     last: dict[str, Any] = {}
@@ -276,7 +276,7 @@ def test_same_request_under_one_key_is_one_sweep(client: Client) -> None:
     assert client.run("paper-200m", set=SHORT).id != client.run("paper-200m", set=SHORT).id
 
 
-def test_service_tells_about_itself(client: Client) -> None:
+def test_service_describes_itself(client: Client) -> None:
     assert "paper-200m" in client.scenarios()
     assert client.scenario("paper-200m")["mud"]["flow_rate"] == 0.01
     assert client.limits()["points_per_sweep"] >= 10_000

@@ -20,9 +20,7 @@ def guarded(tmp_path: Path) -> Iterator[tuple[str, dict[str, str]]]:
     service.stop()
 
 
-def test_a_token_allows_what_its_scope_says(
-    guarded: tuple[str, dict[str, str]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_token_allows_its_scope(guarded: tuple[str, dict[str, str]], monkeypatch: pytest.MonkeyPatch) -> None:
     server, tokens = guarded
     with Client(server) as stranger, pytest.raises(Unauthorized):
         stranger.queue()

@@ -56,7 +56,7 @@ mod tests {
     use crate::cost::tests::report;
 
     #[test]
-    fn trajectories_are_shown_where_there_is_nothing_else() {
+    fn trajectories_are_shown_without_other_measures() {
         let mut report = report();
         assert_eq!(Measure::usual(&report), Measure::OrbitSize);
         for row in report.references.iter_mut().chain(&mut report.methods) {

@@ -38,7 +38,7 @@ pub(super) fn of_runs(runs: &[Run<'_>]) -> Table {
         .with(&INTEGRATOR, texts(|(.., row)| Some(row.integrator.name().to_owned())))
         .with(&STEP, numbers(&|row| Some(row.step)))
         .with(&TOLERANCE, numbers(&|row| row.tolerance))
-        .with(&CONTACT_SWEEPS, counts(|row| Some(row.contact_sweeps.into())))
+        .with(&CONTACT_ITERATIONS, counts(|row| Some(row.contact_sweeps.into())))
         .with(&MESH_FACTOR, numbers(&|row| Some(row.mesh_factor)))
         .with(&ELEMENTS, counts(|row| Some(row.elements as u64)))
         .with(&STEPS, counts(|row| Some(row.steps)))

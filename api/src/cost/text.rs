@@ -189,8 +189,8 @@ fn head(report: &CostReport) -> String {
             "errors are whole errors, of steps, mesh and sampling together; `until` is the time at which a run had settled and ended, and CPU s is its whole processor time\n".to_owned()
         }
         Some(time) => format!(
-            "histories part after {} s (by the method, or by a disturbance of 1e-6 m): they are compared until then, and \
-             beyond it only statistics and lines mean anything\n",
+            "histories part after {} s (by the method, or by a disturbance of 1e-6 m): they are compared until \
+             then, and beyond it only statistics and lines are comparable\n",
             three_digits(time)
         ),
         None => "histories stay together to the end, and are compared over the whole run\n".to_owned(),
@@ -198,8 +198,8 @@ fn head(report: &CostReport) -> String {
     text.push_str(match report.members {
         1 => "one member each: the confidence of a bias is unknown\n",
         _ => {
-            "biases with half the width of their 95 % confidence interval, in brackets the members' standard deviation; ~ if \
-             the interval holds zero\n"
+            "biases with half the width of their 95 % confidence interval, in brackets the members' standard \
+             deviation; ~ if the interval contains zero\n"
         }
     });
     text
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn scenarios_stand_under_each_other_with_the_verdicts_on_promises() {
+    fn scenarios_are_listed_in_order_with_verdicts_on_promises() {
         let other = CostReport { scenario: "other".to_owned(), ..with_draft(0.041, Some(0.2)) };
         insta::assert_snapshot!(overview(&[report(), other]));
     }

@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_presets_windows_follow_a_swept_duration() {
+    fn a_presets_windows_follow_a_duration_axis() {
         let sweep = expansion(json!({"preset": "paper-200m", "axes": {"duration": {"values": [6, 30]}}}));
         let windows: Vec<_> = sweep
             .points

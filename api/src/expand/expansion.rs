@@ -148,7 +148,7 @@ mod tests {
     use crate::expand::tests::{expansion, problems, request};
 
     #[test]
-    fn equal_points_have_equal_keys_however_they_are_asked_for() {
+    fn equal_points_of_different_requests_have_equal_keys() {
         let key_of = |body| key_text(&expand(&request(body)).unwrap().points[0].key);
         let by_preset = key_of(json!({"preset": "paper-200m"}));
         let mut scenario = serde_json::to_value(preset("paper-200m").unwrap()).unwrap();
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_belongs_to_the_point_and_is_checked_where_it_was_written() {
+    fn outputs_belong_to_the_point_and_are_checked_at_their_path() {
         let of = |outputs: Value| json!({"preset": "paper-200m", "outputs": outputs});
         let key_of = |body| expand(&request(body)).unwrap().points[0].key;
         let whole = key_of(json!({"preset": "paper-200m"}));
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn points_have_at_each_accuracy_the_keys_as_if_asked_for() {
+    fn points_have_at_each_accuracy_the_keys_of_a_request_at_it() {
         let of = |accuracy: &str, axes: Value| {
             let set = json!({"accuracy": accuracy});
             expansion(json!({"preset": "paper-200m", "set": set, "outputs": "summary", "axes": axes}))

@@ -52,7 +52,7 @@ impl<'a> Layout<'a> {
                     problems.push(format!("{pointer}/count"), Some((*count).into()), detail);
                 }
                 Axis::Interval { .. } if !design.is_drawn() => {
-                    problems.push(pointer, None, "a range needs `count` too");
+                    problems.push(pointer, None, "a range also needs `count`");
                 }
                 _ => {}
             }
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn drawn_designs_fill_their_intervals_and_go_on_where_they_ended() {
+    fn drawn_designs_fill_their_intervals_and_continue() {
         let body = |design: &str, samples: u32, skip: Option<u32>| {
             let mut body = json!({"preset": "paper-200m", "design": design, "samples": samples, "seed": 3, "axes": {
                 "flow_rate": {"from": 0.01, "to": 0.06},

@@ -74,7 +74,7 @@ mod tests {
     use crate::expand::tests::{pointers, problems};
 
     #[test]
-    fn unsafe_time_stepping_is_refused_with_what_would_be_valid() {
+    fn unsafe_time_stepping_is_refused_with_a_valid_step() {
         let of = |accuracy: Value| {
             problems(
                 json!({"preset": "paper-200m", "set": {"accuracy": accuracy}, "axes": {"flow_rate": {"values": [0.01, 0.02]}}}),
@@ -82,16 +82,16 @@ mod tests {
         };
         let beyond = of(json!({"integrator": "rk4", "step": 1e-4}));
         assert_eq!(beyond.len(), 1, "{beyond:?}");
-        // The method's limit of stability in this scene is 6.37e-5 s.
+        // The method's limit of stability in this scenario is 6.37e-5 s.
         assert!(beyond[0].0.starts_with("/set/accuracy") && beyond[0].2.contains("6.3"), "{beyond:?}");
         let undamped = of(json!({"integrator": "generalized_alpha", "step": 5e-4, "spectral_radius": 1.0}));
         assert!(undamped.len() == 1 && undamped[0].2.contains("0 to 0.95"), "{undamped:?}");
-        let one_sweep = of(json!({"integrator": "esdirk4", "step": 1e-3, "contact_sweeps": 1}));
-        assert!(one_sweep.len() == 1 && one_sweep[0].2.contains("2 to"), "{one_sweep:?}");
+        let one_iteration = of(json!({"integrator": "esdirk4", "step": 1e-3, "contact_sweeps": 1}));
+        assert!(one_iteration.len() == 1 && one_iteration[0].2.contains("2 to"), "{one_iteration:?}");
     }
 
     #[test]
-    fn what_is_left_out_for_later_points_would_not_have_been_found() {
+    fn checks_skipped_for_later_points_find_nothing() {
         // The second point is bad in the one thing that its axis decides, whichever part of the scenario that is in.
         for (path, values) in [
             ("mud.flow_index", [0.5, -0.5]),

@@ -121,7 +121,7 @@ mod tests {
     use crate::expand::tests::{pointers, problems};
 
     #[test]
-    fn every_problem_is_reported_at_once_where_it_was_written() {
+    fn every_problem_is_reported_with_its_path_in_the_request() {
         let body = json!({
             "preset": "paper-200m",
             "priority": 11,

@@ -47,14 +47,14 @@ pub(super) fn references(
         problems.push(
             pointer,
             None,
-            "the points are of the accuracy `reference` already, which verifies others",
+            "the points have the accuracy `reference` already, to which a verification compares",
         );
     }
     if base.cost_study.is_some() || !active_effects(&base).transient {
         problems.push(
             pointer,
             None,
-            "there is no run in time to verify: a cost study, or an equilibrium alone",
+            "there is no run in time to verify: the request is a cost study or an equilibrium alone",
         );
     }
     base.accuracy = reference;
@@ -81,7 +81,11 @@ pub(super) fn references(
             Err(_) if problems.is_full() => break,
             Err(Problems(of_scenario)) => {
                 for Problem { path, message, .. } in of_scenario {
-                    problems.push(pointer, None, format!("the reference cannot run this: {path}: {message}"));
+                    problems.push(
+                        pointer,
+                        None,
+                        format!("not valid at the accuracy `reference`: {path}: {message}"),
+                    );
                 }
             }
         }
@@ -143,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_verified_is_refused_where_it_was_asked_for() {
+    fn an_impossible_verification_is_refused_at_its_path() {
         let of = |verify: Value, set: Value| json!({"preset": "paper-200m", "verify": verify, "set": set});
         for verify in [json!(0), json!(-1), json!(1.5), json!(-0.05)] {
             let [(pointer, got, detail)] = problems(of(verify.clone(), json!({}))).try_into().unwrap();

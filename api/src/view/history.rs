@@ -156,7 +156,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_stays_has_the_box_of_the_whole_however_it_comes(
+        fn decimated_samples_have_the_bounds_of_the_whole_in_any_pieces(
             path in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 1..400),
             max_points in 4_usize..300,
             piece in 1_usize..100,

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_recorded_node_may_be_asked_for() {
+    fn the_nearest_recorded_node_can_be_requested() {
         for (depth, node) in [(0.0, 10), (34.0, 10), (35.0, 49), (125.0, 49), (126.0, 282), (1e4, 282)] {
             assert_eq!(Choice::Nearest(depth).among(&recorded_nodes()).unwrap().node, node, "{depth} m");
         }

@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn points_without_a_result_have_null_where_others_have_a_value() {
+    fn points_without_a_result_have_null_values() {
         let parameters = |density| [("mud_density".to_owned(), density)].into();
         let summary =
             json!({"steps": 60000, "residual": 0.5, "orbit": {"radius": 0.037}, "regimes": ["laminar"]});

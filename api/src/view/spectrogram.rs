@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn whirl_stands_at_its_time_and_at_the_frequency_of_its_sense() {
+    fn whirl_has_a_line_at_its_time_and_signed_frequency() {
         let (time, u, v) = motion();
         let motion = Motion { time: &time, u: &u, v: &v };
         let table = spectrogram(&motion, &request(Some(2.0), Some(1.0), 10.0)).unwrap();
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_short_or_too_large_is_refused_at_its_parameter() {
+    fn too_short_or_too_large_a_window_is_refused_at_its_parameter() {
         let (time, u, v) = motion();
         let motion = Motion { time: &time, u: &u, v: &v };
         let refused = |motion: &Motion<'_>, request| {

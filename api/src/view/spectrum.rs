@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_the_resolved_frequency_is_marked_on_both_sides() {
+    fn unresolved_frequencies_are_marked_on_both_sides() {
         let (time, u, v) = motion();
         let motion = Motion { time: &time, u: &u, v: &v };
         let table = spectrum(&motion, Weighting::Rectangular, 20.0, 3).unwrap();
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn whirl_stands_at_the_frequency_of_its_sense() {
+    fn whirl_has_a_line_at_its_signed_frequency() {
         let (time, u, v) = motion();
         let motion = Motion { time: &time, u: &u, v: &v };
         let table = spectrum(&motion, Weighting::Rectangular, 20.0, 3).unwrap();
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn kept_windows_are_asked_for_by_their_ends() {
+    fn kept_windows_are_selected_by_their_ends() {
         let window = |from, to| KeptWindow { from, to };
         let kept = [window(5.0, 15.0), window(50.0, 60.0)];
         assert_eq!(KeptWindow::choose(&kept, Some(50.0), Some(60.0)).unwrap(), kept[1]);

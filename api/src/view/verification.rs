@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn biases_are_relative_but_for_frequencies_and_absent_where_there_is_no_motion() {
+    fn biases_are_relative_but_for_frequencies_and_absent_at_rest() {
         let of = |name: &str, value: f64, reference: f64| {
             let biases = point(1, json!({ name: value }), json!({ name: reference })).biases();
             biases.get(name).copied()
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_has_an_interval_and_what_exceeds_the_promise_a_warning() {
+    fn the_mean_has_an_interval_and_a_broken_promise_a_warning() {
         let points = [orbit(3, 0.00101), orbit(8, 0.00095), orbit(9, 0.00103), orbit(12, 0.00099)];
         let findings = Findings::new(&points, Some(STANDARD));
         let found = &findings.statistics["orbit_radius_rms_49"];

@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_are_labelled_where_they_are() {
+    fn decades_are_labelled_at_their_places() {
         let axis = PlotAxis::logarithmic([2e-6, 4e-2]).expect("an axis");
         assert_eq!(labels(&axis), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²"]);
         let marked: Vec<_> = axis.ticks().into_iter().filter(|tick| tick.label.is_some()).collect();
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn linear_labels_say_where_they_are_in_as_few_digits_as_it_takes() {
+    fn linear_labels_have_the_fewest_distinct_digits() {
         for exponent in -3..=5 {
             for mantissa in 1..=9 {
                 let end = f64::from(mantissa) * 10f64.powi(exponent);

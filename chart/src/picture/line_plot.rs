@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_breaks_a_line_and_nothing_is_drawn_of_it() {
+    fn non_finite_values_break_a_line_and_are_not_drawn() {
         let points = [[0.0, 1.0], [1.0, 2.0], [2.0, f64::NAN], [3.0, 1.0], [f64::INFINITY, 1.0], [4.0, 3.0]];
         let svg = LinePlot { lines: vec![line("u", points)], ..LinePlot::default() }.svg();
         assert_eq!(polylines(&svg).iter().map(Vec::len).collect::<Vec<_>>(), [2, 1, 1]);
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_is_shaded_on_both_sides_of_the_axis() {
+    fn unresolved_ranges_are_shaded_on_both_sides_of_the_axis() {
         let shade = |beyond: f64| Some(Shade { beyond, name: "not resolved".to_owned() });
         let points = [[-10.0, 1.0], [10.0, 1.0]];
         let shaded = |beyond: f64| {

@@ -30,4 +30,4 @@ pub use line_plot::{Label, Line, LinePlot, Shade, VerticalAxis};
 pub use orbit::OrbitPlot;
 pub use png::PictureError;
 pub use sweep_map::{MapPoint, Spacing, SweepMap};
-pub use work_precision::{Point, Series, WantedAccuracy, WorkPrecisionChart};
+pub use work_precision::{Point, RequestedAccuracy, Series, WorkPrecisionChart};

@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wall_beside_a_small_motion_is_an_arc() {
+    fn the_wall_next_to_a_small_motion_is_an_arc() {
         let arcs = arcs(38.0, View { middle: [38.0, 0.0], half: 0.1 });
         assert_eq!(arcs.len(), 2, "the circle begins in the view");
         let places: Vec<Position> = arcs.concat();

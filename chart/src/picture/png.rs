@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn text_is_as_wide_as_labels_take_it_to_be() {
-        for text in ["measured depth [m]", "10⁻³", "−0.25 m3/s", "ESDIRK4(3)6L, 2 sweeps"] {
+        for text in ["measured depth [m]", "10⁻³", "−0.25 m3/s", "ESDIRK4(3)6L, 2 iterations"] {
             let image = ink(&[(text, 10.0, 30.0, 12.0)]);
             let columns = image.pixels().iter().zip((0..image.width()).cycle());
             let last = columns.filter(|(pixel, _)| pixel.red() < 128).map(|(_, column)| column).max();

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_does_not_show_and_is_most_of_it() {
+    fn simplification_is_invisible_and_removes_most_points() {
         // Forty turns of a slowly growing ellipse, a sample in 2.5 units of the page.
         let orbit: Vec<Position> = (0..20_000)
             .map(|sample| {

@@ -568,7 +568,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_stand_out_have_a_diamond_above_all_cells() {
+    fn highlighted_points_have_a_diamond_above_all_cells() {
         let mut points = grid();
         assert!(!map(points.clone()).svg().contains(r#"class="marker""#));
         for marked in [2, 7] {

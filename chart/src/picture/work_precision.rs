@@ -32,18 +32,18 @@ pub struct WorkPrecisionChart {
     pub x_label: String,
     /// Quantity vertical, with its unit, such as "relative error".
     pub y_label: String,
-    /// The accuracy that is wanted, drawn as a dashed line from left to right.
-    pub wanted: Option<WantedAccuracy>,
+    /// The accuracy that is requested, drawn as a dashed line from left to right.
+    pub requested: Option<RequestedAccuracy>,
     /// The methods compared, in the order of the legend. Up to 56 differ in colour and marker.
     pub series: Vec<Series>,
 }
 
 /// The largest error that is acceptable.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WantedAccuracy {
+pub struct RequestedAccuracy {
     /// The error, in the unit of the vertical axis.
     pub y: f64,
-    /// Text at the line, such as "wanted: 1 %".
+    /// Text at the line, such as "requested: 1 %".
     pub label: String,
 }
 
@@ -104,12 +104,12 @@ impl WorkPrecisionChart {
         Drawing { title, width: PAGE_WIDTH, height: area.bottom + plot_area::BELOW, shapes }
     }
 
-    /// The axes over all points that can be drawn and the wanted accuracy; none without such a point.
+    /// The axes over all points that can be drawn and the requested accuracy; none without such a point.
     fn axes(&self) -> Option<(PlotAxis, PlotAxis)> {
         let points: Vec<&Point> = self.series.iter().flat_map(|series| series.drawable()).collect();
         let x = PlotAxis::logarithmic(points.iter().map(|point| point.x))?;
-        let wanted = self.wanted.iter().map(|wanted| wanted.y);
-        let y = PlotAxis::logarithmic(points.iter().map(|point| point.y).chain(wanted))?;
+        let requested = self.requested.iter().map(|requested| requested.y);
+        let y = PlotAxis::logarithmic(points.iter().map(|point| point.y).chain(requested))?;
         Some((x, y))
     }
 
@@ -139,10 +139,10 @@ impl WorkPrecisionChart {
             }
         }
 
-        if let Some(wanted) = &self.wanted
-            && let Some(height) = y.fraction(wanted.y)
+        if let Some(requested) = &self.requested
+            && let Some(height) = y.fraction(requested.y)
         {
-            shapes.push(wanted_line(&mut room, area, height, &wanted.label));
+            shapes.push(requested_line(&mut room, area, height, &requested.label));
         }
         for (index, line) in lines.iter().enumerate() {
             let (colour, marker) = series_style(index);
@@ -163,8 +163,8 @@ impl Series {
     }
 }
 
-/// The dashed line at the wanted accuracy and its label, at the end of the line where there is most room.
-fn wanted_line(room: &mut LabelRoom, area: &Rectangle, height: f64, label: &str) -> Shape {
+/// The dashed line at the requested accuracy and its label, at the end of the line where there is most room.
+fn requested_line(room: &mut LabelRoom, area: &Rectangle, height: f64, label: &str) -> Shape {
     let line = [plot_area::position(area, 0.0, height), plot_area::position(area, 1.0, height)];
     let label = text::line(label, LABEL_SIZE, Weight::Regular, area.width() / 2.0);
     let (width, y) = (text::room(&label, LABEL_SIZE, Weight::Regular), line[0][1]);
@@ -180,7 +180,7 @@ fn wanted_line(room: &mut LabelRoom, area: &Rectangle, height: f64, label: &str)
         let anchor = if place.left == left { Anchor::Start } else { Anchor::End };
         shapes.extend(label_shapes(label, &place, anchor, LABEL_SIZE, Colour::QUIET_TEXT));
     }
-    Shape::Group("wanted", shapes)
+    Shape::Group("requested", shapes)
 }
 
 /// The label of a point, if there is room. It is anchored at the point's side, to stay next to it in any font.
@@ -223,7 +223,7 @@ mod tests {
             title: "Work and precision".to_owned(),
             x_label: "CPU seconds per simulated second".to_owned(),
             y_label: "relative error".to_owned(),
-            wanted: Some(WantedAccuracy { y: 0.01, label: "wanted: 1 %".to_owned() }),
+            requested: Some(RequestedAccuracy { y: 0.01, label: "requested: 1 %".to_owned() }),
             series: series.collect(),
         }
     }
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn points_lie_where_the_labelled_ticks_say() {
+    fn points_lie_on_the_scale_of_the_labelled_ticks() {
         let chart = chart(3);
         let svg = chart.svg();
         let svg = Document::parse(&svg).expect("well-formed XML");
@@ -265,11 +265,13 @@ mod tests {
         };
         let (x_1, x_10) = (tick("1", "x"), tick("10", "x"));
         let (y_2, y_3) = (tick("10⁻²", "y"), tick("10⁻³", "y"));
-        let wanted = groups(&svg, "wanted")[0].children().find(|node| node.has_tag_name("polyline"));
-        let wanted = wanted.expect("the wanted accuracy").attribute("points").expect("points").to_owned();
-        let y_wanted: f64 = wanted.split([',', ' ']).nth(1).expect("a height").parse().expect("a number");
-        let baseline = y_2 - y_wanted;
-        assert!((3.0..6.0).contains(&baseline), "the wanted 1 % is beside the tick 10⁻²: {baseline}");
+        let requested = groups(&svg, "requested")[0].children().find(|node| node.has_tag_name("polyline"));
+        let requested =
+            requested.expect("the requested accuracy").attribute("points").expect("points").to_owned();
+        let y_requested: f64 =
+            requested.split([',', ' ']).nth(1).expect("a height").parse().expect("a number");
+        let baseline = y_2 - y_requested;
+        assert!((3.0..6.0).contains(&baseline), "the requested 1 % is beside the tick 10⁻²: {baseline}");
 
         let series = groups(&svg, "series");
         assert_eq!(series.len(), 3);
@@ -278,7 +280,7 @@ mod tests {
             assert_eq!(places.len(), series.points.len());
             for ([x, y], point) in places.iter().zip(&series.points) {
                 let expected_x = x_1 + (x_10 - x_1) * point.x.log10();
-                let expected_y = y_wanted + (y_3 - y_2) * (-2.0 - point.y.log10());
+                let expected_y = y_requested + (y_3 - y_2) * (-2.0 - point.y.log10());
                 assert!((x - expected_x).abs() < 0.06, "{point:?}: {x} for {expected_x}");
                 assert!((y - expected_y).abs() < 0.06, "{point:?}: {y} for {expected_y}");
             }
@@ -315,9 +317,9 @@ mod tests {
     fn the_legend_is_above_the_plot_within_the_page_and_labels_are_within_the_plot() {
         for count in [1, 3, 20] {
             let drawing = chart(count).drawing();
-            let members = |wanted: &str| -> Vec<Shape> {
+            let members = |requested: &str| -> Vec<Shape> {
                 let found = drawing.shapes.iter().find_map(|shape| match shape {
-                    Shape::Group(class, members) if *class == wanted => Some(members.clone()),
+                    Shape::Group(class, members) if *class == requested => Some(members.clone()),
                     _ => None,
                 });
                 found.expect("the group")
@@ -355,7 +357,7 @@ mod tests {
         for step in ["2 ms", "1 ms", "0.5 ms", "0.25 ms"] {
             assert_eq!(texts.iter().filter(|text| *text == step).count(), 3, "{step}");
         }
-        assert!(texts.contains(&"wanted: 1 %".to_owned()));
+        assert!(texts.contains(&"requested: 1 %".to_owned()));
     }
 
     #[test]
@@ -365,7 +367,7 @@ mod tests {
         chart.title = hostile.to_owned();
         chart.x_label = hostile.to_owned();
         chart.y_label = hostile.to_owned();
-        chart.wanted = Some(WantedAccuracy { y: 0.01, label: hostile.to_owned() });
+        chart.requested = Some(RequestedAccuracy { y: 0.01, label: hostile.to_owned() });
         chart.series[0].name = hostile.to_owned();
         chart.series[0].points[0].label = hostile.to_owned();
         let svg = chart.svg();
@@ -384,10 +386,10 @@ mod tests {
             chart.series[0].points.insert(2, point(value, 0.1, "lost"));
             chart.series[0].points.insert(1, point(0.1, value, "lost"));
         }
-        chart.wanted = Some(WantedAccuracy { y: 0.0, label: "lost".to_owned() });
+        chart.requested = Some(RequestedAccuracy { y: 0.0, label: "lost".to_owned() });
         let svg = chart.svg();
         chart.series[0].points.retain(|point| point.label != "lost");
-        chart.wanted = None;
+        chart.requested = None;
         assert_eq!(svg, chart.svg());
     }
 
@@ -450,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn a_png_has_the_size_asked_for_and_shows_what_the_svg_says() {
+    fn a_png_has_the_requested_size_and_the_content_of_the_svg() {
         let chart = chart(3);
         let drawing = chart.drawing();
         let svg = chart.svg();

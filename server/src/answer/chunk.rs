@@ -41,7 +41,7 @@ pub(crate) fn body(first: Option<Chunk>, receiver: mpsc::Receiver<Result<Chunk>>
 /// Error that breaks off a body.
 fn broken_off(error: Error) -> io::Error {
     let detail = error.into_problem().detail;
-    tracing::error!(detail, "an answer was broken off");
+    tracing::error!(detail, "a response was aborted");
     io::Error::other(detail)
 }
 
@@ -65,7 +65,7 @@ impl Allowance {
     ) -> Option<mpsc::Permit<'s, T>> {
         let began = Instant::now();
         let Ok(room) = timeout(self.left, sender.reserve()).await else {
-            tracing::warn!("an answer is broken off: its client takes less than {LEAST_RATE} bytes/s");
+            tracing::warn!("a response is aborted: its client reads less than {LEAST_RATE} bytes/s");
             return None;
         };
         self.note(began.elapsed(), bytes);

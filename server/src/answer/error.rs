@@ -200,7 +200,7 @@ mod tests {
         for (error, expected) in [
             (
                 ChartError::NoField { columns: names() },
-                problem("fields", None, "a picture needs the column that it shows; there are u_49, time"),
+                problem("fields", None, "a picture needs a column; there are u_49, time"),
             ),
             (
                 ChartError::NoSuchColumn { name: name(), columns: names() },

@@ -19,7 +19,7 @@ use crate::answer::json::Json;
 static PROGRAM: LazyLock<String> = LazyLock::new(|| match hash_of_program() {
     Ok(hash) => hash.to_hex().to_string(),
     Err(error) => {
-        tracing::warn!(%error, "the program's file cannot be read: clients' copies hold until the next start only");
+        tracing::warn!(%error, "the executable cannot be read: ETags change at the next start");
         uuid::Uuid::now_v7().to_string()
     }
 });
@@ -140,7 +140,6 @@ pub(crate) fn expected_revision(headers: &HeaderMap, current: u64) -> Result<Opt
 
 /// Problem of a change that expects another revision.
 pub(crate) fn changed_meanwhile(current: u64) -> Error {
-    let detail =
-        format!("the sweep has revision {current} by now; read it again, and change what it is then");
+    let detail = format!("the sweep now has revision {current}; read it again and repeat the change");
     Error::new(ProblemKind::PreconditionFailed, detail)
 }

@@ -61,12 +61,12 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
     let essence = media_type.split(';').next().unwrap_or_default().trim();
     if !essence.eq_ignore_ascii_case("application/json") {
         let found = if essence.is_empty() { "without one" } else { essence };
-        let detail = format!("the body must come with Content-Type: application/json, not {found}");
+        let detail = format!("the body must have Content-Type: application/json, not {found}");
         return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
     }
     let encoding = request.headers().get(header::CONTENT_ENCODING).map(HeaderValue::as_bytes);
     if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(b"identity")) {
-        let detail = "the body must be sent as it is, without Content-Encoding";
+        let detail = "the body must have no Content-Encoding";
         return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
     }
     let too_large = || Error::new(ProblemKind::BodyTooLarge, format!("a body has at most {most} bytes"));
@@ -87,7 +87,7 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
                 return Err(too_large());
             }
             if !memory.grow(bytes.len() + frame.len()) {
-                return Err(Error::unavailable("large bodies take all the memory that there is for them"));
+                return Err(Error::unavailable("the memory for large bodies is in use"));
             }
             bytes.extend_from_slice(&frame);
         }
@@ -97,7 +97,7 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
     match timeout(patience, receiving).await {
         Ok(received) => received?,
         Err(_) => {
-            let detail = format!("the body did not come within {} s", patience.as_secs_f64());
+            let detail = format!("the body was not received within {} s", patience.as_secs_f64());
             return Err(Error::new(ProblemKind::RequestTimeout, detail));
         }
     }
@@ -158,7 +158,7 @@ impl Count<'_> {
             None => {
                 let most = LIMITS.values_per_request;
                 Err(E::custom(format_args!(
-                    "a body has at most {most} values, those of axes and points not counted"
+                    "a body has at most {most} values, not counting those of axes and points"
                 )))
             }
         }

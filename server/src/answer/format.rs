@@ -59,16 +59,16 @@ pub(crate) enum Format {
 }
 
 /// Format that a query may request.
-pub(crate) trait Asked: Into<Format> {
+pub(crate) trait RequestedFormat: Into<Format> {
     /// All formats that the query may request; on a tie of `Accept` the first one wins.
     const OFFERED: &'static [Format];
 }
 
-impl Asked for TableFormat {
+impl RequestedFormat for TableFormat {
     const OFFERED: &'static [Format] = &[Format::Json, Format::Csv, Format::Parquet, Format::Npz];
 }
 
-impl Asked for PictureFormat {
+impl RequestedFormat for PictureFormat {
     const OFFERED: &'static [Format] =
         &[Format::Json, Format::Csv, Format::Parquet, Format::Npz, Format::Svg, Format::Png];
 }
@@ -132,7 +132,7 @@ impl Format {
     }
 
     /// The format to serve: `?format=` if given, else the best that `Accept` allows, else JSON.
-    pub(crate) fn choose<A: Asked>(asked: Option<A>, headers: &HeaderMap) -> Result<Format> {
+    pub(crate) fn choose<A: RequestedFormat>(asked: Option<A>, headers: &HeaderMap) -> Result<Format> {
         if let Some(format) = asked {
             return Ok(format.into());
         }

@@ -65,7 +65,7 @@ pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<Wor
     let state = records::point_state(point.state);
     let detail = match state {
         PointState::Queued | PointState::Running => {
-            format!("point {n} is {state}: its result is not there yet")
+            format!("point {n} is {state}: it has no result yet")
         }
         _ => format!("point {n} is {state}: it has no result"),
     };

@@ -18,10 +18,10 @@ use crate::answer::error::{Error, Result};
 use crate::answer::records;
 
 /// Length of the ranges in which files are read, verified and sent \[bytes\]: the unit of verification of the store.
-const STRETCH: u64 = 256 << 10;
+const PART: u64 = 256 << 10;
 
 /// Memory for sending a stored file \[bytes\]: a range that is sent, and the next one.
-pub(crate) const MEMORY_OF_FILE: u64 = 2 * STRETCH;
+pub(crate) const MEMORY_OF_FILE: u64 = 2 * PART;
 
 /// A table of a result; nothing of it is in memory.
 #[derive(Clone)]
@@ -124,12 +124,12 @@ impl Stored {
     }
 
     /// The ranges in which a range of the bytes is read.
-    pub(crate) fn stretches(range: Range<u64>) -> impl Iterator<Item = Range<u64>> {
+    pub(crate) fn parts(range: Range<u64>) -> impl Iterator<Item = Range<u64>> {
         let mut next = range.start;
         std::iter::from_fn(move || {
-            let stretch = next..range.end.min((next / STRETCH + 1) * STRETCH);
-            next = stretch.end;
-            (!stretch.is_empty()).then_some(stretch)
+            let part = next..range.end.min((next / PART + 1) * PART);
+            next = part.end;
+            (!part.is_empty()).then_some(part)
         })
     }
 
@@ -141,9 +141,9 @@ impl Stored {
         range: Range<u64>,
         place: impl Future<Output = Result<(H, Allowance)>>,
     ) -> Result<Body> {
-        let mut stretches = Self::stretches(range).peekable();
-        let Some(first) = stretches.next() else { return Ok(Body::empty()) };
-        if stretches.peek().is_none() {
+        let mut parts = Self::parts(range).peekable();
+        let Some(first) = parts.next() else { return Ok(Body::empty()) };
+        if parts.peek().is_none() {
             return Ok(self.range(first).await?.into());
         }
         let (held, mut allowance) = place.await?;
@@ -151,11 +151,11 @@ impl Stored {
         let (sender, receiver) = mpsc::channel(1);
         tokio::spawn(async move {
             let _held = held;
-            while let Some(stretch) = stretches.next() {
-                let bytes = (stretch.end - stretch.start) as usize;
+            while let Some(part) = parts.next() {
+                let bytes = (part.end - part.start) as usize;
                 let Some(room) = allowance.room(&sender, bytes).await else { return };
-                let next = match self.range(stretch).await {
-                    Ok(bytes) if stretches.peek().is_none() => Ok(Chunk::Last(bytes)),
+                let next = match self.range(part).await {
+                    Ok(bytes) if parts.peek().is_none() => Ok(Chunk::Last(bytes)),
                     Ok(bytes) => Ok(Chunk::One(bytes)),
                     Err(error) => Err(error),
                 };
@@ -219,18 +219,19 @@ const RECOMPUTING: Duration = Duration::from_secs(30);
 
 /// Problem of a lost table, with its repair.
 fn damaged(name: &str, repair: Repair) -> Error {
-    let is_lost = format!("the table {name} is lost or was changed in storage, and nothing of it is served");
+    let is_lost = format!("the stored table {name} is missing or damaged");
     let consequence = match repair {
         Repair::Queued | Repair::UnderWay => {
-            let detail = format!("{is_lost}; its point is computed again: request it when that is done");
+            let detail = format!("{is_lost}; its point is being recomputed, try again later");
             return Error::temporary(ProblemKind::Recomputing, detail, RECOMPUTING);
         }
-        Repair::TriedBefore => "computing the point again has brought no result, and its `error` says why; \
-                                submit it again to retry"
-            .to_owned(),
+        Repair::TriedBefore => {
+            "recomputing its point failed, with the reason in the point's `error`; submit it again to retry"
+                .to_owned()
+        }
         Repair::OtherNumbers(version) => format!(
-            "it is of physics version {version}, which nobody computes any more: submit the scenario again, for version \
-             {PHYSICS_VERSION}"
+            "it is of physics version {version}, which no worker computes any more: submit the scenario again, for \
+             version {PHYSICS_VERSION}"
         ),
         Repair::Replaced => return Error::unavailable("a table was replaced while it was read"),
     };

@@ -147,7 +147,7 @@ mod tests {
     const ALLOWANCE: Duration = Duration::from_secs(10);
 
     #[tokio::test]
-    async fn work_beyond_the_places_waits_and_what_is_beyond_that_is_refused() {
+    async fn work_beyond_the_units_waits_and_beyond_the_queue_is_refused() {
         let lane = Arc::new(Lane::new(1, 1, 1, ALLOWANCE));
         let first = lane.enter(1).await.map_err(Error::into_problem).expect("a place is free");
         let second = tokio::spawn({
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn work_takes_what_it_needs_and_at_most_all_there_is() {
+    async fn work_takes_its_units_and_at_most_all() {
         let lane = Lane::new(10, 1, 0, ALLOWANCE);
         let small = lane.enter(3).await.map_err(Error::into_problem).expect("there is room");
         let other = lane.enter(7).await.map_err(Error::into_problem).expect("there is just room");

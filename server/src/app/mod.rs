@@ -35,7 +35,7 @@ use crate::app::pictures::Pictures;
 use crate::app::readiness::Readiness;
 use crate::app::retention::RetentionConfig;
 use crate::app::shares::Shares;
-use crate::guard::strangers::Strangers;
+use crate::guard::invalid_tokens::InvalidTokens;
 use crate::listen::ConnectionLimits;
 
 /// Largest number of open event streams, and of long polls; each reads the store some times a second.
@@ -111,7 +111,7 @@ pub(crate) struct App {
     /// Places for long polls.
     pub(crate) polls: Arc<Shares>,
     /// Addresses that send invalid tokens.
-    pub(crate) strangers: Arc<Strangers>,
+    pub(crate) invalid_tokens: Arc<InvalidTokens>,
     pub(crate) columns: Arc<KnownColumns>,
     pictures: Arc<Pictures>,
     /// Memory for views of results \[KiB\].
@@ -133,7 +133,7 @@ impl App {
             Arc::new(Lane::new(units, config.large_answers, config.large_answers_waiting, allowance))
         };
         let metrics = Metrics::new(&store);
-        let strangers = Strangers::new(metrics.refused_tokens.clone());
+        let invalid_tokens = InvalidTokens::new(metrics.refused_tokens.clone());
         App {
             store,
             limiter: Arc::new(RequestLimiter::new(&config.owner_limits)),
@@ -141,7 +141,7 @@ impl App {
             readiness: Arc::default(),
             streams: Shares::new("event streams", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             polls: Shares::new("long polls", HELD_ANSWERS, LIMITS.held_answers_per_owner),
-            strangers: Arc::new(strangers),
+            invalid_tokens: Arc::new(invalid_tokens),
             columns: Arc::default(),
             pictures: Arc::new(Pictures::new()),
             views: lane(config.large_answer_bytes / KIB),

@@ -65,7 +65,7 @@ mod tests {
     use crate::answer::error::Error;
 
     #[tokio::test]
-    async fn viewers_of_one_picture_cost_one_drawing_and_a_failed_one_is_tried_again() {
+    async fn viewers_of_one_picture_share_a_drawing_and_a_failed_one_is_retried() {
         let pictures = Arc::new(Pictures::new());
         let drawn = Arc::new(AtomicUsize::new(0));
         let view = |key: &'static str, fails: bool| {

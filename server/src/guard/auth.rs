@@ -140,14 +140,14 @@ async fn identify(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> Result<
 /// The token is not valid (401), or too many from its address were not (429).
 pub(crate) async fn valid_token(app: &App, peer: Option<Peer>, text: &str) -> Result<TokenRecord> {
     let secret = TokenSecret::parse(text.trim());
-    app.strangers.admit(peer, secret.as_ref())?;
+    app.invalid_tokens.admit(peer, secret.as_ref())?;
     if let Some(secret) = &secret
         && let Some(token) = app.store.valid_token(secret).await?
     {
-        app.strangers.know(secret);
+        app.invalid_tokens.know(secret);
         return Ok(token);
     }
-    app.strangers.refuse(peer, secret.as_ref());
+    app.invalid_tokens.refuse(peer, secret.as_ref());
     Err(Error::unauthorized("the token is unknown, expired or revoked"))
 }
 

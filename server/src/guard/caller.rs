@@ -27,7 +27,7 @@ impl Caller {
             }
             (Caller::Bearer(token), Some(asked)) => {
                 let detail = format!(
-                    "owner: this token submits for {}, not for {asked}; leave the owner out, or use an admin token",
+                    "owner: this token submits for {}, not for {asked}; omit the owner, or use an admin token",
                     token.owner
                 );
                 Err(Error::new(ProblemKind::Forbidden, detail))

@@ -123,7 +123,7 @@ async fn agree_on_encoding(mut request: Request, next: Next) -> Response<Body> {
     }
     if !accepts(&accepted, &["gzip", "x-gzip"]).or(any).unwrap_or(false) {
         let detail = format!(
-            "answers are encoded as gzip or not at all (identity), not as Accept-Encoding wants: {accepted}"
+            "responses are encoded as gzip or identity, and Accept-Encoding accepts neither: {accepted}"
         );
         return Error::new(ProblemKind::NotAcceptable, detail).into_response();
     }
@@ -201,7 +201,7 @@ const LIGHT: [&str; 6] = ["/livez", "/readyz", "/v1/queue", "/v1/workers", "/v1/
 /// Refuses other paths to connections in the reserve.
 async fn keep_reserve(request: Request, next: Next) -> Response<Body> {
     if request.extensions().get::<InReserve>().is_some() && !LIGHT.contains(&request.uri().path()) {
-        return Error::unavailable("all connections are taken").into_response();
+        return Error::unavailable("all connections are in use").into_response();
     }
     next.run(request).await
 }

@@ -11,7 +11,7 @@ use utoipa::openapi::{
 };
 use utoipa::{IntoParams, IntoResponses, ToSchema};
 
-use crate::answer::format::{Asked, Format, PictureFormat, TableFormat};
+use crate::answer::format::{Format, PictureFormat, RequestedFormat, TableFormat};
 
 /// Problems of all routes.
 pub(crate) struct Problems;

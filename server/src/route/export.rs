@@ -183,8 +183,8 @@ impl Archive {
             format!("points/{ordinal}/{}.{extension}", artifact.name),
             options.large_file(stored.length() > 1 << 31),
         )?;
-        for stretch in Stored::stretches(0..stored.length()) {
-            zip.write_all(&self.handle.block_on(stored.range(stretch)).map_err(failed)?)?;
+        for part in Stored::parts(0..stored.length()) {
+            zip.write_all(&self.handle.block_on(stored.range(part)).map_err(failed)?)?;
         }
         Ok(())
     }

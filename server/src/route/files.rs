@@ -75,7 +75,7 @@ pub(crate) async fn list(
     operation_id = "get_artifact",
     params(
         ArtifactPath,
-        ("Range" = Option<String>, Header, description = "Which bytes, such as `bytes=0-1023`."),
+        ("Range" = Option<String>, Header, description = "Range of bytes, such as `bytes=0-1023`."),
         ("If-None-Match" = Option<String>, Header, description = "The `ETag` of a copy; 304 if it is still current."),
         ("If-Range" = Option<String>, Header, description = "The `ETag` under which `Range` holds."),
     ),

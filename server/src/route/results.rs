@@ -467,8 +467,8 @@ fn check_shown(rows: usize, columns: usize) -> Result<()> {
         return Ok(());
     }
     let detail = format!(
-        "the picture would show {values} values, {rows} of each of {columns} columns, and shows at most {MOST_SHOWN}: ask for one \
-         node, some `fields`, a shorter window, or at most so many points"
+        "the picture would show {values} values, {rows} of each of {columns} columns, more than the limit of {MOST_SHOWN}: \
+         request one node, fewer `fields`, a shorter window, or at most that many points"
     );
     Err(Error::parameter("max_points", None, detail))
 }

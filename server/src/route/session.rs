@@ -77,7 +77,7 @@ pub(crate) async fn open(
     tag = "service",
     operation_id = "delete_session",
     security(()),
-    responses((status = 204, description = "There is no session any more"), Problems)
+    responses((status = 204, description = "The session is over"), Problems)
 )]
 pub(crate) async fn close(State(app): State<App>, headers: HeaderMap) -> Result<impl IntoResponse> {
     if let Some(secret) = session_cookie(&headers) {

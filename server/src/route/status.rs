@@ -47,7 +47,7 @@ pub(crate) async fn workers(State(app): State<App>) -> Result<Json<WorkerList>> 
     path = "/v1/queue",
     tag = "service",
     operation_id = "get_queue",
-    responses((status = 200, description = "How much is queued and how much is running", body = Queue), Problems)
+    responses((status = 200, description = "Numbers of queued and of running points", body = Queue), Problems)
 )]
 pub(crate) async fn queue(State(app): State<App>) -> Result<Json<Queue>> {
     let depths = app.store.queue_depths().await?;

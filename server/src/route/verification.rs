@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn what_is_left_of_a_deleted_sweep_is_no_table() {
+    async fn the_remainder_of_a_deleted_sweep_is_no_table() {
         let directory = tempfile::tempdir().expect("a temporary directory");
         let config = StoreConfig::in_directory(directory.path(), Role::Server);
         let store = Store::open(&config).await.expect("a store");

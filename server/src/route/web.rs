@@ -117,7 +117,7 @@ impl File {
 }
 
 fn missing(uri: &Uri) -> Error {
-    Error::new(ProblemKind::NoSuchRoute, format!("there is nothing at {}", uri.path()))
+    Error::new(ProblemKind::NoSuchRoute, format!("there is no page {}", uri.path()))
 }
 
 fn tag(path: &str) -> Result<HeaderValue> {

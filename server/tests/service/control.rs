@@ -24,7 +24,7 @@ async fn a_paused_sweep_says_so_and_goes_on_when_resumed() {
 }
 
 #[tokio::test]
-async fn what_people_decide_about_a_sweep_is_changed_alone_or_together() {
+async fn editable_fields_of_a_sweep_change_alone_or_together() {
     let bench = Bench::new().await;
     let id = bench.submit(json!({"preset": "paper-200m", "name": "a", "tags": ["x", "campaign-7"]})).await;
     let path = format!("/v1/sweeps/{id}");
@@ -152,7 +152,7 @@ async fn the_cache_is_used_refreshed_or_all_there_is() {
 }
 
 #[tokio::test]
-async fn what_was_given_up_is_listed_over_all_sweeps() {
+async fn dead_work_is_listed_over_all_sweeps() {
     let bench = Bench::new().await;
     let mut ids = Vec::new();
     for (owner, flow_rate) in [("anne", 0.01), ("bert", 0.02)] {

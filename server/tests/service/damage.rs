@@ -42,7 +42,7 @@ async fn a_reader_of_a_damaged_table_has_it_computed_again() {
     for ask in ["artifacts/history", "history", "orbit?node=49", "spectrum?node=49"] {
         let problem = bench.get(&format!("{point}/{ask}")).await.problem(503, "recomputing");
         let detail = problem["detail"].as_str().unwrap();
-        assert!(detail.contains("table history") && detail.contains("computed again"), "{detail}");
+        assert!(detail.contains("table history") && detail.contains("recomputed"), "{detail}");
         // Once: the second reader finds it on its way.
         let counts = bench.get(&path).await.json()["counts"].clone();
         assert_eq!((&counts["queued"], &counts["succeeded"]), (&json!(1), &json!(1)), "{ask}");
@@ -80,7 +80,7 @@ async fn no_range_of_a_damaged_file_is_served() {
 }
 
 #[tokio::test]
-async fn what_cannot_be_computed_again_says_so() {
+async fn a_result_whose_repair_failed_is_reported_as_damaged() {
     let bench = Bench::new().await;
     let path = finished(&bench).await;
     damage(&bench, &path, "history").await;
@@ -88,13 +88,13 @@ async fn what_cannot_be_computed_again_says_so() {
     bench.get(&file).await.problem(503, "recomputing");
     bench.diverge().await;
     let problem = bench.get(&file).await.problem(500, "damaged");
-    assert!(problem["detail"].as_str().unwrap().contains("has brought no result"), "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("recomputing its point failed"), "{problem}");
     // It is not tried again and again.
     assert_eq!(bench.get(&path).await.json()["counts"]["succeeded"], 2);
 }
 
 #[tokio::test]
-async fn an_export_has_all_but_the_damaged_and_says_what_is_missing() {
+async fn an_export_omits_and_lists_damaged_results() {
     let bench = Bench::new().await;
     let path = finished(&bench).await;
     let whole = bench.get(&format!("{path}/export")).await;
@@ -115,7 +115,7 @@ async fn an_export_has_all_but_the_damaged_and_says_what_is_missing() {
     let expected = [(1, "profile"), (1, "statics"), (2, "profile"), (2, "statics")];
     assert_eq!(found, expected.map(|(point, table)| (point, table.to_owned())));
     for entry in missing {
-        assert!(entry["reason"].as_str().unwrap().contains("computed again"), "{entry}");
+        assert!(entry["reason"].as_str().unwrap().contains("recomputed"), "{entry}");
     }
     assert_eq!(bench.get(&path).await.json()["counts"]["queued"], 2);
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::bench::{Bench, json_request};
 
 #[tokio::test]
-async fn what_does_not_exist_is_answered_with_a_problem() {
+async fn a_missing_resource_is_answered_with_a_problem() {
     let bench = Bench::new().await;
     bench.get("/v2/sweeps").await.problem(404, "no-such-route");
     bench.get("/v1/sweeps/unknown").await.problem(404, "not-found");
@@ -25,7 +25,7 @@ async fn what_does_not_exist_is_answered_with_a_problem() {
 }
 
 #[tokio::test]
-async fn a_wrong_parameter_is_named_with_what_would_be_valid() {
+async fn a_wrong_parameter_is_named_with_valid_ones() {
     let bench = Bench::new().await;
     let id = bench.submit(json!({"preset": "paper-200m"})).await;
     for (path, name, got, words) in [
@@ -205,7 +205,7 @@ async fn cursors_and_control_characters_that_nothing_gave_out_are_refused() {
 }
 
 #[tokio::test]
-async fn pages_for_people_are_kept_to_themselves() {
+async fn html_pages_are_isolated_by_headers() {
     let answer = Bench::new().await.get("/docs").await;
     assert_eq!(answer.headers["x-frame-options"], "DENY");
     assert_eq!(answer.headers["x-content-type-options"], "nosniff");

@@ -146,7 +146,7 @@ async fn sweeps_are_listed_newest_first_in_pages() {
 }
 
 #[tokio::test]
-async fn a_sweep_says_that_it_waits_for_a_worker_of_its_version_until_there_is_one() {
+async fn a_sweep_reports_waiting_for_a_worker_of_its_version() {
     let bench = Bench::new().await;
     let physics = i64::from(PHYSICS_VERSION);
     let id =
@@ -158,7 +158,7 @@ async fn a_sweep_says_that_it_waits_for_a_worker_of_its_version_until_there_is_o
         (&nobody["physics_version"], &nobody["worker_physics_versions"]),
         (&json!(physics), &json!([]))
     );
-    assert!(nobody["reason"].as_str().unwrap().contains("no worker has been heard of"), "{nobody}");
+    assert!(nobody["reason"].as_str().unwrap().contains("no worker has sent a heartbeat"), "{nobody}");
 
     for version in [physics + 1, physics - 1] {
         bench.store.register_worker(&worker(version)).await.unwrap();

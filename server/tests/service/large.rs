@@ -46,7 +46,7 @@ async fn finished(bench: &Bench, history: &Table, nodes: u32) -> String {
 }
 
 #[tokio::test]
-async fn a_long_history_is_in_every_format_what_the_table_in_memory_is() {
+async fn a_long_history_equals_the_table_in_memory_in_every_format() {
     let bench = Bench::new().await;
     let history = noise(25_000, 3);
     let point = finished(&bench, &history, 3).await;
@@ -109,7 +109,7 @@ async fn a_stored_file_goes_out_with_its_length() {
 }
 
 #[tokio::test]
-async fn an_answer_breaks_off_at_what_is_damaged_and_has_it_computed_again() {
+async fn an_answer_breaks_off_at_damage_and_queues_a_repair() {
     let bench = Bench::new().await;
     let history = noise(25_000, 3);
     let point = finished(&bench, &history, 3).await;
@@ -141,7 +141,7 @@ async fn an_answer_breaks_off_at_what_is_damaged_and_has_it_computed_again() {
 }
 
 #[tokio::test]
-async fn a_picture_of_too_much_is_refused_with_what_would_be_less() {
+async fn a_picture_of_too_much_is_refused_with_an_alternative() {
     let bench = Bench::new().await;
     let nodes = 41;
     let zeros = Column::Single(vec![0.0; 25_000]);
@@ -261,7 +261,7 @@ const OK: &str = "HTTP/1.1 200 OK";
 const BUSY: &str = "HTTP/1.1 503 Service Unavailable";
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_takes_little_does_not_wait_for_slow_clients_of_what_takes_much() {
+async fn small_answers_do_not_wait_for_slow_clients_of_large_ones() {
     let bench = Bench::new().await;
     let nodes = 40;
     let point = finished(&bench, &noise(10_000, nodes), nodes).await;
@@ -293,7 +293,7 @@ async fn what_takes_little_does_not_wait_for_slow_clients_of_what_takes_much() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_answer_whose_client_takes_nothing_is_broken_off() {
+async fn an_answer_to_a_stalled_client_is_aborted() {
     let bench = Bench::new().await;
     let nodes = 40;
     let history = noise(10_000, nodes);

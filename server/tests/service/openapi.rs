@@ -14,7 +14,7 @@ use crate::bench::Bench;
 
 /// `DRILLSWEEP_WRITE_OPENAPI=1 cargo nextest run -p drillsweep-server -E 'test(the_committed_document)'` rewrites the file.
 #[test]
-fn the_committed_document_is_what_the_annotations_say() {
+fn the_committed_document_matches_the_annotations() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../api/openapi.json");
     if std::env::var_os("DRILLSWEEP_WRITE_OPENAPI").is_some() {
         std::fs::write(&path, &*OPENAPI_JSON).unwrap();
@@ -122,7 +122,7 @@ fn the_columns_of_every_table_are_described() {
 }
 
 #[tokio::test]
-async fn the_vocabulary_is_served_to_everybody() {
+async fn the_vocabulary_is_served_without_a_token() {
     let bench = Bench::new().await;
     let secret = TokenSecret::generate().unwrap();
     let token =
@@ -164,7 +164,7 @@ fn problem_kinds_have_error_statuses() {
 }
 
 #[tokio::test]
-async fn people_read_the_document_as_pages_without_a_token() {
+async fn the_document_is_shown_as_pages_without_a_token() {
     let bench = Bench::new().await;
     let secret = TokenSecret::generate().unwrap();
     let token =

@@ -165,7 +165,7 @@ async fn behind_https_the_cookie_goes_by_https_alone() {
 }
 
 #[tokio::test]
-async fn the_page_and_all_that_it_loads_are_served_to_everybody() {
+async fn the_page_and_its_modules_are_served_without_a_token() {
     let bench = Bench::new().await;
     token(&bench, TokenScope::Read, None).await;
     let page = bench.get("/").await;

@@ -61,7 +61,7 @@ async fn results_are_shown_as_drawings_and_as_pixels() {
 }
 
 #[tokio::test]
-async fn a_map_says_at_which_depth_a_node_is_where_it_is_at_one() {
+async fn a_map_names_the_depth_of_a_node_of_one_mesh() {
     let bench = Bench::new().await;
     let over = async |axes: serde_json::Value| {
         let id = bench.submit(json!({"preset": "paper-200m", "axes": axes})).await;

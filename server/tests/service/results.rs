@@ -183,7 +183,7 @@ async fn a_node_that_was_not_recorded_is_answered_with_those_that_were() {
 }
 
 #[tokio::test]
-async fn a_point_without_a_result_says_where_it_stands() {
+async fn a_point_without_a_result_reports_its_state() {
     let (bench, path) = finished().await;
     let problem = bench.get(&format!("{path}/points/2/orbit?node=49")).await.problem(409, "no-result");
     assert_eq!(problem["state"], "failed");
@@ -213,7 +213,7 @@ async fn a_point_shows_its_summary_and_provenance() {
 }
 
 #[tokio::test]
-async fn what_the_client_has_a_copy_of_is_not_sent_again() {
+async fn a_current_copy_of_the_client_is_not_sent_again() {
     let mut bench = Bench::new().await;
     let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
     let path = format!("/v1/sweeps/{}", bench.submit(body).await);

@@ -139,7 +139,7 @@ fn ticks(svg: &str, axis: &str) -> [f64; 2] {
 }
 
 #[tokio::test]
-async fn a_picture_of_a_history_shows_the_rotation_of_the_bit_out_of_the_snapshots() {
+async fn a_history_picture_takes_the_rotation_of_the_bit_from_snapshots() {
     let bench = Bench::new().await;
     let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
     let id = bench.submit(body).await;

@@ -93,7 +93,7 @@ async fn a_dry_run_returns_the_points_and_stores_nothing() {
 }
 
 #[tokio::test]
-async fn listed_points_keep_the_order_of_their_columns_however_numbers_are_written() {
+async fn listed_points_keep_the_order_of_their_columns_in_any_number_format() {
     let bench = Bench::new().await;
     for priority in ["2", "2.0"] {
         let body = format!(

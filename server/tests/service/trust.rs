@@ -99,7 +99,7 @@ async fn a_stream_of_events_ends_with_its_token() {
 }
 
 #[tokio::test]
-async fn a_token_allows_what_its_scope_says_on_whose_sweeps_it_says() {
+async fn a_token_allows_its_scope_on_its_owners_sweeps() {
     let bench = Bench::new().await;
     let anne = token(&bench, "anne", TokenScope::Submit).await;
     let bob = token(&bench, "bob", TokenScope::Submit).await;

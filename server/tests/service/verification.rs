@@ -130,7 +130,7 @@ async fn a_method_without_a_promise_has_a_bias_and_no_warning() {
 }
 
 #[tokio::test]
-async fn failed_reference_runs_are_reported_and_retried_and_known_ones_are_not_run_again() {
+async fn failed_reference_runs_are_retried_and_known_ones_reused() {
     let bench = Bench::new().await;
     let id = bench.submit(grid(1.0, &json!("draft"))).await;
     let path = format!("/v1/sweeps/{id}");
@@ -183,7 +183,7 @@ async fn failed_reference_runs_are_reported_and_retried_and_known_ones_are_not_r
 }
 
 #[tokio::test]
-async fn of_added_points_as_many_are_verified_as_make_up_the_part_of_the_whole() {
+async fn added_points_are_verified_to_the_part_of_the_whole() {
     let bench = Bench::new().await;
     let id = bench
         .submit(json!({"preset": "paper-200m", "verify": 0.25, "axes": {"flow_rate": {"from": 0.01, "to": 0.03, "count": 4}}}))
@@ -206,7 +206,7 @@ async fn of_added_points_as_many_are_verified_as_make_up_the_part_of_the_whole()
 }
 
 #[tokio::test]
-async fn what_cannot_be_verified_is_a_problem_of_the_request() {
+async fn an_impossible_verification_is_a_problem_of_the_request() {
     let bench = Bench::new().await;
     for (body, said) in [
         (json!({"preset": "paper-200m", "verify": 1.5}), "a part of the points"),

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::force::nodal::{At, Dependence, ForceScene, NodalForce};
+use crate::force::nodal::{At, Dependence, ForceContext, NodalForce};
 use crate::math::dof::{DOFS, THETA_Z, W};
 
 /// The force of a scenario's weight and torque on bit.
-pub(super) fn force(scene: &ForceScene<'_>) -> Option<Arc<dyn NodalForce>> {
-    let bit = scene.nodes.len().checked_sub(1)?;
-    let operation = &scene.scenario.operation;
+pub(super) fn force(context: &ForceContext<'_>) -> Option<Arc<dyn NodalForce>> {
+    let bit = context.nodes.len().checked_sub(1)?;
+    let operation = &context.scenario.operation;
     let mut load = [0.0; DOFS];
     (load[W], load[THETA_Z]) = (operation.weight_on_bit, operation.torque_on_bit);
     Some(Arc::new(EndLoad { bit: [bit], load }))

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::force::nodal::{ForceScene, NodalForce};
+use crate::force::nodal::{ForceContext, NodalForce};
 use crate::force::{end_load, unbalance, wall};
 
 /// Works of forces that the ledger books, each under a name of its own.
@@ -10,6 +10,6 @@ pub(crate) const ENTRIES: [&str; 4] =
     [unbalance::WORK.name, wall::NORMAL_WORK, wall::FRICTION_WORK, wall::ROTATION_WORK];
 
 /// Forces of a scenario at a few nodes.
-pub(crate) fn nodal_forces(scene: &ForceScene<'_>) -> Vec<Arc<dyn NodalForce>> {
-    [end_load::force, unbalance::force].into_iter().filter_map(|force| force(scene)).collect()
+pub(crate) fn nodal_forces(context: &ForceContext<'_>) -> Vec<Arc<dyn NodalForce>> {
+    [end_load::force, unbalance::force].into_iter().filter_map(|force| force(context)).collect()
 }

@@ -9,7 +9,7 @@ use crate::math::dof::DOFS;
 use crate::string::MeshNode;
 
 /// Scenario and string that determine the forces.
-pub(crate) struct ForceScene<'a> {
+pub(crate) struct ForceContext<'a> {
     pub(crate) scenario: &'a Scenario,
     pub(crate) effects: &'a ActiveEffects,
     /// Nodes from the top.

@@ -127,7 +127,7 @@ impl<const D: usize> PointForces<D> {
     pub(crate) fn add_of_time(&self, time: f64, out: &mut [[f64; DOFS]], nodal: &mut NodalField<D>) {
         let still = |_| NodeMotion { displacement: [0.0; DOFS], velocity: [0.0; DOFS] };
         let at = At { time, motion: &still, unknowns: &[], memory: &[] };
-        for point in self.that_depend_on(Dependence::Time) {
+        for point in self.depending_on(Dependence::Time) {
             point.force.forces(&at, &mut out[point.sites.clone()]);
             self.add(point, out, nodal);
         }
@@ -265,7 +265,7 @@ impl<const D: usize> PointForces<D> {
         }
     }
 
-    fn that_depend_on(&self, dependence: Dependence) -> impl Iterator<Item = &Point> {
+    fn depending_on(&self, dependence: Dependence) -> impl Iterator<Item = &Point> {
         self.points.iter().filter(move |point| point.force.dependence() == dependence)
     }
 

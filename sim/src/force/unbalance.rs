@@ -5,19 +5,19 @@
 use std::sync::Arc;
 
 use crate::force::drive::Drive;
-use crate::force::nodal::{At, Dependence, ForceScene, NodalForce};
-use crate::force::term::{Account, Call, Scene, Term, no, yes};
+use crate::force::nodal::{At, Dependence, ForceContext, NodalForce};
+use crate::force::term::{Account, Decision, EffectContext, Term, no, yes};
 use crate::math::dof::{DOFS, LATERAL, U, V};
 use crate::string::MeshNode;
 
-pub(crate) const TERM: Term = Term::new(called_for);
+pub(crate) const TERM: Term = Term::new(decide);
 
 /// Work done by the unbalance: int F_u . v dt.
 pub(crate) const WORK: Account = Account::given("work_unbalance", |booked| booked.by_force("work_unbalance"));
 
-fn called_for(scene: &Scene<'_>) -> Call {
-    let mut masses = scene.scenario.string.unbalance.iter();
-    match (masses.any(|mass| mass.mass != 0.0 && mass.radius != 0.0), scene.turns()) {
+fn decide(context: &EffectContext<'_>) -> Decision {
+    let mut masses = context.scenario.string.unbalance.iter();
+    match (masses.any(|mass| mass.mass != 0.0 && mass.radius != 0.0), context.turns()) {
         (false, _) => no("no mass is off the axis"),
         (true, false) => no("the string does not turn"),
         (true, true) => yes("masses off the axis turn"),
@@ -25,8 +25,8 @@ fn called_for(scene: &Scene<'_>) -> Call {
 }
 
 /// The force of a scenario's masses.
-pub(super) fn force(scene: &ForceScene<'_>) -> Option<Arc<dyn NodalForce>> {
-    let forces = if scene.effects.unbalance { forces(scene.nodes, scene.drive) } else { Vec::new() };
+pub(super) fn force(context: &ForceContext<'_>) -> Option<Arc<dyn NodalForce>> {
+    let forces = if context.effects.unbalance { forces(context.nodes, context.drive) } else { Vec::new() };
     if forces.is_empty() {
         return None;
     }
@@ -37,7 +37,7 @@ pub(super) fn force(scene: &ForceScene<'_>) -> Option<Arc<dyn NodalForce>> {
     Some(Arc::new(TurningForces {
         nodes: forces.iter().map(|force| force.node).collect(),
         at_start: forces.iter().map(at_start).collect(),
-        drive: *scene.drive,
+        drive: *context.drive,
     }))
 }
 

@@ -28,7 +28,7 @@ pub enum ElementKind {
 
 /// A part of the string of one kind, one cross-section and one material, with nodes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stretch {
+pub(super) struct UniformPart {
     /// Measured depth of the upper end \[m\].
     pub(super) top: f64,
     /// Measured depth of the lower end \[m\].
@@ -42,7 +42,7 @@ pub(super) struct Stretch {
 }
 
 /// The parts of the string by its sections, from the top down.
-pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<Stretch>, MeshError> {
+pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshError> {
     let mut stretches = Vec::new();
     let mut section_top = 0.0;
     for (index, section) in scenario.string.sections.iter().enumerate() {
@@ -96,7 +96,7 @@ fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
 
 /// One piece of pipe: tool joint, body, tool joint; or the body alone. Targets are those of body and tool joint.
 fn push_piece(
-    stretches: &mut Vec<Stretch>,
+    stretches: &mut Vec<UniformPart>,
     string: &DrillString,
     section: &Section,
     (target, joint_target): (f64, f64),
@@ -108,7 +108,7 @@ fn push_piece(
         SectionKind::Stabilizer => ElementKind::Stabilizer,
         SectionKind::Bit => ElementKind::Bit,
     };
-    let body = Stretch {
+    let body = UniformPart {
         top,
         bottom,
         kind,
@@ -121,7 +121,7 @@ fn push_piece(
         stretches.push(body);
         return;
     };
-    let joint_stretch = Stretch {
+    let joint_stretch = UniformPart {
         kind: ElementKind::ToolJoint,
         outer_diameter: joint.outer_diameter,
         inner_diameter: joint.inner_diameter,
@@ -130,14 +130,14 @@ fn push_piece(
         ..body
     };
     let (body_top, body_bottom) = (top + joint.length, bottom - joint.length);
-    stretches.push(Stretch { bottom: body_top, ..joint_stretch });
-    stretches.push(Stretch { top: body_top, bottom: body_bottom, ..body });
-    stretches.push(Stretch { top: body_bottom, ..joint_stretch });
+    stretches.push(UniformPart { bottom: body_top, ..joint_stretch });
+    stretches.push(UniformPart { top: body_top, bottom: body_bottom, ..body });
+    stretches.push(UniformPart { top: body_bottom, ..joint_stretch });
 }
 
 /// Splits the parts at each of `places` \[m\], in the order of depth. A place nearer to an end of its
 /// part than [`SNAP_FRACTION`] of the target length splits nothing: that end takes its place.
-pub(super) fn split(mut stretches: Vec<Stretch>, places: &[f64]) -> Vec<Stretch> {
+pub(super) fn split(mut stretches: Vec<UniformPart>, places: &[f64]) -> Vec<UniformPart> {
     let mut places = places.to_vec();
     places.sort_by(f64::total_cmp);
     for place in places {
@@ -148,7 +148,7 @@ pub(super) fn split(mut stretches: Vec<Stretch>, places: &[f64]) -> Vec<Stretch>
             continue;
         }
         stretches[below].bottom = place;
-        stretches.insert(below + 1, Stretch { top: place, ..stretch });
+        stretches.insert(below + 1, UniformPart { top: place, ..stretch });
     }
     stretches
 }

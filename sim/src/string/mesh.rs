@@ -172,7 +172,7 @@ pub(crate) fn is_on_string(measured_depth: f64, length: f64) -> bool {
 }
 
 /// Cuts each part into equal elements.
-fn cut(stretches: &[boundaries::Stretch]) -> Result<Vec<MeshElement>, MeshError> {
+fn cut(stretches: &[boundaries::UniformPart]) -> Result<Vec<MeshElement>, MeshError> {
     let mut elements = Vec::new();
     for stretch in stretches {
         if !(stretch.target.is_finite() && stretch.target > 0.0) {

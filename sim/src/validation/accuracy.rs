@@ -14,7 +14,7 @@ const LARGEST_SPECTRAL_RADIUS: f64 = 0.95;
 const FINEST_UNDAMPED_STEP: f64 = 1e-4;
 
 /// Number of contact iterations beyond which a solve has long converged or never will.
-const MOST_SWEEPS: u32 = 1000;
+const MOST_CONTACT_ITERATIONS: u32 = 1000;
 
 pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
     let stepping = scenario.accuracy.time_stepping();
@@ -60,10 +60,10 @@ pub(super) fn check_accuracy(report: &mut Report, scenario: &Scenario) {
 
     let explicit = stepping.integrator == Integrator::Rk4;
     report.require(
-        explicit || (2..=MOST_SWEEPS).contains(&stepping.contact_sweeps),
+        explicit || (2..=MOST_CONTACT_ITERATIONS).contains(&stepping.contact_sweeps),
         "accuracy.contact_sweeps",
         stepping.contact_sweeps,
-        format!("must be 2 to {MOST_SWEEPS} for an implicit method"),
+        format!("must be 2 to {MOST_CONTACT_ITERATIONS} for an implicit method"),
     );
     if let Some(radius) = stepping.spectral_radius {
         let of_alpha = stepping.integrator == Integrator::GeneralizedAlpha;

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_is_valid_and_without_warnings_but_for_the_extremes_that_it_is_named_for() {
+    fn every_preset_is_valid_and_warns_of_its_named_extreme_alone() {
         for (name, _) in PRESETS {
             let extreme = match *name {
                 "hard/light-mud" | "hard/heavy-mud" => Some("mud.density"),
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_not_finite_are_reported_wherever_they_stand() {
+    fn non_finite_numbers_are_reported_at_any_path() {
         let scenario = preset("paper-200m").unwrap().with("accuracy.tolerance", 0.01.into()).unwrap();
         let tree = toml::Value::try_from(&scenario).unwrap();
         let mut paths = Vec::new();

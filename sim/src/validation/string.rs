@@ -420,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn clearances_are_between_nothing_and_what_the_body_leaves() {
+    fn clearances_lie_between_zero_and_that_of_the_body() {
         for clearance in [0.0, -1e-4] {
             problem("string.gauges[0].clearance", |s| s.string.gauges[0].clearance = clearance);
         }

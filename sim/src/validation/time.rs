@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn implicit_methods_sweep_the_contacts_twice() {
+    fn implicit_methods_iterate_contact_at_least_twice() {
         for contact_sweeps in [0, 1, 1001] {
             let stepping = TimeStepping { contact_sweeps, ..explicit(Integrator::GeneralizedAlpha, 1e-3) };
             accuracy_problem("accuracy.contact_sweeps", stepping);
@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_are_of_what_is_recorded() {
+    fn outputs_cover_recorded_nodes() {
         let keep = |outputs: OrbitOutputs| {
             move |s: &mut Scenario| s.recording.outputs = Outputs::Orbits(outputs.clone())
         };

@@ -1,12 +1,12 @@
 -- name: PAGES
--- What is wrong with the database's indexes, a line each: those that a build left invalid. The server itself checks its pages where
--- its data directory was made with checksums.
+-- Problems of the database's indexes, a line each: indexes that an interrupted build left invalid. The server checks its pages itself if
+-- its data directory has checksums.
 SELECT format('index %s is invalid', indexrelid::regclass) FROM pg_index
 WHERE NOT indisvalid AND indrelid IN (SELECT oid FROM pg_class WHERE relnamespace = current_schema()::regnamespace)
 
 -- name: REFERENCES
--- Rows that name another that is not there, which the constraints make impossible unless they were switched off.
--- Gives: the row's table, the other's.
+-- Rows with a dangling reference, which the constraints exclude unless they were switched off.
+-- Returns: table of the row, table of the missing row.
 SELECT 'point', 'work' FROM point WHERE NOT EXISTS (SELECT 1 FROM work WHERE work.key = point.work_key)
 UNION ALL
 SELECT 'point', 'sweep' FROM point WHERE NOT EXISTS (SELECT 1 FROM sweep WHERE sweep.id = point.sweep_id)

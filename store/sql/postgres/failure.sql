@@ -1,8 +1,8 @@
 -- name: LIST
--- Points that failed or were given up as dead, over all sweeps, the latest first.
--- $1 time, $2 sweep, $3 ordinal of the point after which they are, $4 owner or none, $5 class of error or none,
--- $6 how many at most.
--- The condition on the time alone is what the index of the failures can go by.
+-- Failed and dead points of all sweeps, latest first.
+-- $1 time, $2 sweep, $3 ordinal of the point before the first, $4 owner or null, $5 class of error or null,
+-- $6 largest number of rows.
+-- The condition on the time alone is redundant; it lets the index of the failures apply.
 SELECT s.id AS sweep_id, s.name AS sweep_name, s.owner, w.changed,
        p.ordinal, p.parameters, w.key, NULL::text AS base, NULL::text AS changes, w.state, w.progress, w.attempts,
        w.error, NULL::text AS summary, NULL::text AS provenance

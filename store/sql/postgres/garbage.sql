@@ -1,7 +1,7 @@
 -- name: DELETE_SCENARIOS
--- Deletes the scenarios that no work item changes any more: all work is gone through once.
+-- Deletes scenarios without a work item, in one pass over all work.
 DELETE FROM scenario WHERE hash NOT IN (SELECT DISTINCT base FROM work WHERE base IS NOT NULL)
 
 -- name: TRUNCATE_LOG
--- Nothing: the server keeps its write-ahead log, and its vacuum gives pages back.
+-- No operation: the server manages its write-ahead log, and autovacuum frees pages.
 SELECT 1 WHERE false

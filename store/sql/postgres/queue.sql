@@ -1,20 +1,20 @@
 -- name: BEGIN_TO_LOOK
--- Whether it is time that somebody looks for what is due, who then is the one that asks (migrations/postgres/0001_schema.sql).
--- $1 how long nobody need look after somebody has [ms].
+-- True if a search for due work is due; the caller then makes it, and no other process (migrations/postgres/0001_schema.sql).
+-- $1 interval of searches [ms].
 SELECT begin_to_look($1)
 
 -- name: CLAIM
--- Hands out the next work item: of the owner whose turn it is the most urgent, of these the first in the order asked for
+-- Claims the next work item: of the owner whose turn it is the one of highest priority, then the first in order
 -- (migrations/postgres/0001_schema.sql).
--- $1 worker, $2 length of the lease [ms], $3 version of the numbers.
--- Gives: work item, fencing token, base, changes, checkpoint; nothing if no work is ready.
+-- $1 worker, $2 length of the lease [ms], $3 physics version.
+-- Returns: work item, fencing token, base, changes, checkpoint; nothing if no work is ready.
 SELECT key, fencing_token, base, changes, checkpoint FROM claim_work($1, $2, $3)
 
 -- name: END_LEASES
--- Takes work back whose lease has run out: a death of the worker, and the last that the work is given makes it dead. A
--- result from before stays, and the work is done then.
--- $1 deaths that make it dead.
--- Gives: new state, deaths, worker, what is known of it.
+-- Ends expired leases. Each counts as a crash of the worker; work that reaches the limit becomes dead. If the work ends here and has an
+-- earlier result, its state becomes done.
+-- $1 limit of crashes.
+-- Returns: new state, crashes, worker, note about it.
 UPDATE work SET
     crash_count = crash_count + 1, progress = 0, lease_until = NULL, changed = (SELECT now FROM clock),
     state = CASE WHEN NOT cancel_requested AND crash_count + 1 < $1 THEN 'queued'
@@ -30,9 +30,9 @@ WHERE state = 'leased' AND lease_until < (SELECT now FROM clock)
 RETURNING state, crash_count, lease_owner, worker_note
 
 -- name: END_OUTDATED
--- Ends work whose version of the numbers no worker computes any more. A result from before stays, and the work is done then.
--- $1 version of the numbers that is computed now, $2 how lately a worker must have been heard of [ms], $3 how many at most.
--- Each of the three kinds of waiting work by an index of its own.
+-- Ends waiting work of an earlier physics version without a worker. If the work ends here and has an earlier result, its state becomes done.
+-- $1 current physics version, $2 largest age of a worker's heartbeat [ms], $3 largest number of rows.
+-- Each of the three kinds of waiting work has its own index.
 UPDATE work SET
     state = CASE WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done' ELSE 'failed' END,
     error = json_build_object('class', 'outdated', 'reason',
@@ -51,25 +51,25 @@ WHERE key IN (SELECT key
               LIMIT $3)
 
 -- name: FINISH_AND_CLAIM
--- Stores a result, where it is the first of its work item, hands the next work item to the same worker, and does what follows from both
--- (migrations/postgres/0001_schema.sql). It commits, and is no part of a transaction.
--- $1 work item, $2 fencing token, $3 worker, $4 summary, $5 provenance, $6 artifacts (a JSON array of objects as in the table), $7 length of the
--- lease [ms], $8 version of the numbers.
--- Gives: 'done'; 'lost', the lease; 'earlier' if there is a result already; 'missing' and the name of a blob that is not reserved; and after
--- 'done' work item, fencing token, base, changes, checkpoint, if work is ready.
+-- Stores the first result of a work item, claims the next work item for the same worker, and applies the consequences of both
+-- (migrations/postgres/0001_schema.sql). It commits by itself and cannot be part of a transaction.
+-- $1 work item, $2 fencing token, $3 worker, $4 summary, $5 provenance, $6 artifacts (a JSON array of objects as in the table), $7
+-- length of the lease [ms], $8 physics version.
+-- Returns: 'done'; 'lost', the lease; 'earlier' if there is a result already; 'missing' and the name of a blob that is not reserved; and
+-- after 'done' work item, fencing token, base, changes, checkpoint, if work is ready.
 CALL finish_and_claim($1, $2, $3, $4, $5, $6::json, $7, $8, NULL, NULL, NULL, NULL, NULL, NULL)
 
 -- name: FINISH_AT_ONCE
--- Ends a lease with a result, if that is the first of its work item: one statement instead of several, each a message to the server and
--- back (migrations/postgres/0001_schema.sql).
+-- Ends a lease with a result, if that is the first of its work item: one round trip instead of several
+-- (migrations/postgres/0001_schema.sql).
 -- $1 work item, $2 fencing token, $3 worker, $4 summary, $5 provenance, $6 artifacts (a JSON array of objects as in the table).
--- Gives: what came of it; nothing if it has to be done step by step.
+-- Returns: the outcome; nothing if single statements are needed.
 SELECT outcome FROM finish_work($1, $2, $3, $4, $5, $6::json) AS done (outcome) WHERE outcome <> 'earlier'
 
 -- name: IS_ANYTHING_OUTDATED
--- Whether work waits whose version of the numbers no worker computes any more.
--- $1 version of the numbers that is computed now, $2 how lately a worker must have been heard of [ms].
--- Each of the three by an index of its own.
+-- True if work of an earlier physics version without a worker waits.
+-- $1 current physics version, $2 largest age of a worker's heartbeat [ms].
+-- Each of the three has its own index.
 SELECT EXISTS (SELECT 1 FROM work
                WHERE state = 'queued' AND NOT held AND physics_version < $1
                  AND NOT EXISTS (SELECT 1 FROM worker
@@ -87,16 +87,16 @@ SELECT EXISTS (SELECT 1 FROM work
                                    AND last_seen > (SELECT now FROM clock) - $2))
 
 -- name: KEEP_DISAGREEMENT
--- Marks a result as one of which another has been seen, though it agrees with the one before it.
--- $1 work item, $2 provenance of the one before.
+-- Keeps the mark and the record of an earlier disagreement on a result that agrees with the one before it.
+-- $1 work item, $2 provenance of the earlier result.
 UPDATE result SET
     disagrees = true,
     provenance = jsonb_set(provenance::jsonb, '{disagreement}', $2::jsonb -> 'disagreement')::text
 WHERE work_key = $1
 
 -- name: NOTE_DISAGREEMENT
--- Marks a result as other than the one before it.
--- $1 work item, $2 what differs, $3 provenance of the one before.
+-- Marks a result as different from the one before it, and records the difference.
+-- $1 work item, $2 difference, $3 provenance of the earlier result.
 UPDATE result SET
     disagrees = true,
     provenance = jsonb_set(provenance::jsonb, '{disagreement}',
@@ -104,9 +104,9 @@ UPDATE result SET
 WHERE work_key = $1
 
 -- name: RETRY_LATER
--- Ends a lease after the infrastructure failed: the work waits, twice as long as the time before and up to half as long
--- again by chance, and fails at the last try that it is given. A result from before stays, and the work is done then.
--- $1 work item, $2 fencing token, $3 worker, $4 error, JSON, $5 tries, $6 least wait before the first retry [ms].
+-- Ends a lease after a failure of the infrastructure: the work waits with exponential backoff and up to 50 % jitter, and fails at the
+-- last try. If the work ends here and has an earlier result, its state becomes done.
+-- $1 work item, $2 fencing token, $3 worker, $4 error, JSON, $5 largest number of tries, $6 least wait before the first retry [ms].
 UPDATE work SET
     state = CASE WHEN NOT cancel_requested AND failure_count + 1 < $5 THEN 'waiting'
                  WHEN EXISTS (SELECT 1 FROM result WHERE work_key = work.key) THEN 'done'

@@ -1,17 +1,17 @@
 -- name: RESERVE
--- Reserves blobs for rows to come, but those that are being deleted: they are not deleted until then. Who has reserved one for longer
--- keeps it (migrations/postgres/0001_schema.sql).
--- $1 their names, a JSON array without repetitions, $2 for how long [ms].
--- Gives: those that are reserved.
+-- Reserves blobs for future rows, except those under deletion: a reserved blob is not deleted. A longer reservation is kept
+-- (migrations/postgres/0001_schema.sql).
+-- $1 their names, a JSON array without repetitions, $2 duration [ms].
+-- Returns: the reserved ones.
 SELECT blob FROM reserve_blobs($1::json, $2) AS reserved (blob)
 
 -- name: RESERVE_AT_ONCE
--- Reserves blobs for rows to come, as `RESERVE`, and extends a lease, as `lease::RENEW`, whose work is computed: one statement instead of two,
--- each a message to the server and back. The writers' lock is taken first, and the work item's row after it, as by everybody else.
--- $1 work item, $2 fencing token, $3 worker, $4 length of the lease [ms], $5 names of the blobs, a JSON array without repetitions, $6 for
--- how long they are reserved [ms].
--- Gives: how many blobs are reserved, and whether a cancellation is asked for, null if the lease is lost; nothing if it has to be done
--- step by step.
+-- Reserves blobs as `RESERVE` and extends the lease of computed work as `lease::RENEW`: one round trip instead of two. The writers' lock
+-- is taken before the lock of the work item's row, as in all other statements.
+-- $1 work item, $2 fencing token, $3 worker, $4 length of the lease [ms], $5 names of the blobs, a JSON array without repetitions, $6
+-- duration of the reservation [ms].
+-- Returns: number of reserved blobs, and true if a cancellation is requested, null if the lease is lost; nothing if single statements
+-- are needed.
 WITH reserved AS MATERIALIZED (
     SELECT count(*) AS blobs FROM reserve_blobs($5::json, $6)),
 renewed AS (
@@ -21,8 +21,8 @@ renewed AS (
 SELECT blobs, cancel_requested FROM reserved LEFT JOIN renewed ON true
 
 -- name: UNRESERVED
--- Those of some blobs that are not reserved, or not any more.
+-- Blobs of a list without a valid reservation.
 -- $1 their names, a JSON array.
--- Each is looked up by itself: as a join it would go through all reservations.
+-- A lookup for each blob: a join would scan all reservations.
 SELECT value FROM json_array_elements_text($1::json) AS names (value)
 WHERE coalesce((SELECT expires FROM upload WHERE blob = value), 0) <= (SELECT now FROM clock)

@@ -1,28 +1,28 @@
 -- name: ANALYZE
--- Counts again what the planner of statements goes by: until that is done, it takes tables that have just grown for small ones, and sorts what it could
--- read in order.
+-- Updates the planner's statistics: until then it takes tables that have just grown for small ones, and sorts rows that it could read in
+-- order.
 ANALYZE point, work
 
 -- name: COPY_ARTIFACTS
--- Gives results that were copied the tables of those that they were copied from.
--- $1 keys of those and of these, hexadecimal digits: a JSON array of pairs.
+-- Copies artifacts of results to copies of these results.
+-- $1 keys of sources and targets, hexadecimal: a JSON array of pairs.
 INSERT INTO artifact (work_key, name, media_type, blob, bytes, row_count, expired)
 SELECT decode(pair ->> 1, 'hex'), name, media_type, blob, bytes, row_count, expired
 FROM json_array_elements($1::json) AS pair JOIN artifact ON work_key = decode(pair ->> 0, 'hex')
 ON CONFLICT (work_key, name) DO NOTHING
 
 -- name: COPY_RESULTS
--- Gives work items the results of others, which theirs are to take the place of.
--- $1 keys of those and of these, hexadecimal digits: a JSON array of pairs.
+-- Copies results of work items to other work items, as their earlier results.
+-- $1 keys of sources and targets, hexadecimal: a JSON array of pairs.
 INSERT INTO result (work_key, summary, provenance, created, disagrees, damaged)
 SELECT decode(pair ->> 1, 'hex'), summary, provenance, created, disagrees, damaged
 FROM json_array_elements($1::json) AS pair JOIN result ON work_key = decode(pair ->> 0, 'hex')
 ON CONFLICT (work_key) DO NOTHING
 
 -- name: COUNT
--- Counts the points of a sweep that are new, or the runs that verify points; from then on the counts follow the work.
--- $1 sweep, $2 their ordinals, a JSON array, $3 time, $4 whether they are runs.
--- Each is looked up by itself, whatever the planner thinks of tables that have just grown.
+-- Adds new points of a sweep, or new verification runs, to its counts; afterwards the counts follow the work.
+-- $1 sweep, $2 their ordinals, a JSON array, $3 time, $4 true for runs.
+-- A lookup for each point, independent of the planner's statistics of tables that have just grown.
 UPDATE sweep SET (points_queued, points_running, points_done, points_failed, points_cancelled,
                   verifications, verifications_queued, verifications_running, verifications_done,
                   verifications_failed, verifications_cancelled, finished) = (
@@ -46,8 +46,8 @@ UPDATE sweep SET (points_queued, points_running, points_done, points_failed, poi
 WHERE id = $1
 
 -- name: FULLER_RESULTS
--- Those of some work items that have a result with all its tables, and are not being recomputed.
--- $1 their keys, a JSON array of hexadecimal digits.
+-- Work items of a list that are done with an undamaged result and no expired artifact.
+-- $1 their keys, a JSON array of hexadecimal strings.
 SELECT key FROM work
 WHERE key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json))
   AND state = 'done'
@@ -55,25 +55,23 @@ WHERE key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json
   AND NOT EXISTS (SELECT 1 FROM artifact WHERE work_key = work.key AND expired IS NOT NULL)
 
 -- name: INSERT_POINTS
--- Stores points of a sweep, or runs that verify some.
--- $1 sweep, $2 whether they are runs, $3 ordinals, keys of their work, hexadecimal digits, and parameters: a JSON array of
--- triples.
+-- Stores points or verification runs of a sweep.
+-- $1 sweep, $2 true for runs, $3 ordinals, keys of their work (hexadecimal) and parameters: a JSON array of triples.
 INSERT INTO point (sweep_id, verifies, ordinal, parameters, work_key)
 SELECT $1, $2, (value ->> 0)::bigint, value ->> 2, decode(value ->> 1, 'hex') FROM json_array_elements($3::json) AS rows (value)
 
 -- name: INSERT_WORK
--- Stores work items, each a place after the one before.
--- $1 their keys, hexadecimal digits, and changes: a JSON array of pairs; $2 the place before the first, $3 distance of the
--- places, $4 base, $5 version of the numbers, $6 owner, $7 whether they are held, $8 priority, $9 time, $10 whether those
--- that are final are recomputed, $11 first place that is taken in the owner's order.
+-- Stores work items at consecutive positions.
+-- $1 their keys (hexadecimal) and changes: a JSON array of pairs; $2 position before the first, $3 distance of positions, $4 base, $5
+-- physics version, $6 owner, $7 true if held, $8 priority, $9 time, $10 true if final ones are recomputed, $11 first position taken in
+-- the owner's order.
 --
--- What becomes of work that is there: what was cancelled, has a damaged result, or is to be recomputed, is taken up again as if it were new.
--- What is open goes as early as the most urgent sweep that wants it, is neither cancelled nor held any more, and becomes a
--- turn of the owner in whose order it stands nearer to the front: else a few points would wait for all of somebody else's
--- sweep that has them too. All else stays as it is, by the last condition: where a row is changed and is not open, it is
--- taken up again.
+-- Existing final work is queued like new work if it was cancelled, has a damaged result, or is to be recomputed. Existing open work
+-- takes the higher priority, loses a requested cancellation, stays held only if both are held, and, unless leased or held by this
+-- request alone, moves to the owner in whose order it is nearer to the front: otherwise a few points would wait for a whole sweep of
+-- another owner that has them too. The last condition leaves all other rows unchanged.
 --
--- A work item that is among them twice is stored as the first of the two: a statement can change a row only once.
+-- Duplicates are stored at the position of the first: a statement can change a row only once.
 INSERT INTO work AS w (key, changes, vtime, base, physics_version, owner, state, held, priority, ready_at, created, changed)
 SELECT DISTINCT ON (key) key, changes, $2 + $3 * number, $4, $5, $6, 'queued', $7, $8, $9, $9, $9
 FROM (SELECT decode(value ->> 0, 'hex') AS key, value ->> 1 AS changes, number
@@ -111,20 +109,20 @@ WHERE CASE WHEN w.is_open
       END
 
 -- name: KNOWN_RESULTS
--- Counts those of some work items that have a result which is not damaged.
--- $1 their keys, a JSON array of hexadecimal digits.
+-- Number of work items of a list with an undamaged result.
+-- $1 their keys, a JSON array of hexadecimal strings.
 SELECT count(*) FROM result WHERE work_key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json)) AND damaged IS NULL
 
 -- name: KNOWN_WORK
--- Those of some work items that have a result or failed.
--- $1 their keys, a JSON array of hexadecimal digits.
+-- Work items of a list that have a result or failed.
+-- $1 their keys, a JSON array of hexadecimal strings.
 SELECT key FROM work
 WHERE key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json))
   AND (stage = 'failed' OR EXISTS (SELECT 1 FROM result WHERE work_key = work.key))
 
 -- name: OTHERS_RESULTS
--- Those of some work items that are final and that sweeps of other owners have.
--- $1 their keys, a JSON array of hexadecimal digits; $2 the owner.
+-- Work items of a list that are done, failed or dead and belong to a sweep of another owner.
+-- $1 their keys, a JSON array of hexadecimal strings; $2 the owner.
 SELECT key FROM work
 WHERE key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json))
   AND state IN ('done', 'failed', 'dead')
@@ -132,7 +130,7 @@ WHERE key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($1::json
               WHERE point.work_key = work.key AND sweep.owner <> $2)
 
 -- name: POINTS_OF
--- Those of some work items that a sweep has among its points.
--- $1 sweep, $2 their keys, a JSON array of hexadecimal digits.
+-- Work items of a list that belong to points of a sweep.
+-- $1 sweep, $2 their keys, a JSON array of hexadecimal strings.
 SELECT work_key FROM point
 WHERE work_key IN (SELECT decode(value, 'hex') FROM json_array_elements_text($2::json)) AND sweep_id = $1 AND NOT verifies

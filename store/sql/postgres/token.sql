@@ -1,7 +1,7 @@
 -- name: CREATE
--- Stores a token; one whose text is stored already stays as it is, and so it does where another server stores it at the same moment: then its
--- identifier, which is made of the hash, may be what is found twice first.
--- $1 token, $2 hash of its text, $3 owner, $4 name, $5 scope, $6 how long it is valid [ms], or none for ever.
+-- Stores a token, unless its text is stored already. The conflict may be on the hash or on the identifier, which derives from it, if
+-- another server stores the same token at the same moment.
+-- $1 token, $2 hash of its text, $3 owner, $4 name, $5 scope, $6 validity [ms], or null without end.
 INSERT INTO token (id, hash, owner, name, scope, created, expires)
 VALUES ($1, $2, $3, $4, $5, (SELECT now FROM clock), (SELECT now FROM clock) + $6)
 ON CONFLICT DO NOTHING

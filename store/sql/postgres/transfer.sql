@@ -1,7 +1,7 @@
 -- name: COLUMNS
--- The columns of a table that are stored, by their names; not those of `work` that its trigger sets by the state.
+-- Stored columns of a table, by name, without those of `work` that its trigger derives from the state.
 -- $1 table.
--- Gives: name, what it holds, its place in the primary key from 1, or 0.
+-- Returns: name, type, position in the primary key from 1, or 0.
 SELECT attname::text,
        CASE atttypid WHEN 'bigint'::regtype THEN 'integer' WHEN 'boolean'::regtype THEN 'flag'
                      WHEN 'double precision'::regtype THEN 'real' WHEN 'bytea'::regtype THEN 'bytes' ELSE 'text' END,

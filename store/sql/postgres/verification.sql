@@ -1,7 +1,7 @@
 -- name: LIST
--- The points of a sweep that are verified, in order, with the runs that verify them.
+-- Verified points of a sweep, in order, with their verification runs.
 -- $1 sweep.
--- Gives: ordinal, parameters, summary of the point, the run's key, state, error, summary.
+-- Returns: ordinal, parameters, summary of the point, the run's key, state, error, summary.
 SELECT v.ordinal, p.parameters, of_point.summary, w.key,
        CASE WHEN s.cancelled AND w.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE w.state END AS state,
        w.error, reference.summary

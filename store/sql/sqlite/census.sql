@@ -3,5 +3,5 @@
 SELECT count(*) FROM result WHERE disagrees <> 0
 
 -- name: OLDEST_QUEUED
--- For how long the oldest work item that is ready has been waiting [ms].
+-- Waiting time of the oldest ready work item [ms].
 SELECT coalesce(max(0, (SELECT now FROM clock) - min(changed)), 0) FROM work WHERE state = 'queued' AND held = 0

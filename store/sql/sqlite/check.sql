@@ -1,8 +1,8 @@
 -- name: PAGES
--- What is wrong with the database's pages and indexes, a line each; `ok` where nothing is.
+-- Problems of the database's pages and indexes, a line each; `ok` without any.
 PRAGMA integrity_check
 
 -- name: REFERENCES
--- Rows that name another that is not there.
--- Gives: the row's table, the other's.
+-- Rows with a dangling reference.
+-- Returns: table of the row, table of the missing row.
 SELECT "table", parent FROM pragma_foreign_key_check

@@ -1,9 +1,9 @@
 -- name: LIST
--- Points that failed or were given up as dead, over all sweeps, the latest first.
--- $1 time, $2 sweep, $3 ordinal of the point after which they are, $4 owner or none, $5 class of error or none,
--- $6 how many at most.
--- An explicit order of the tables: the failures are few, and the index has them in this order. An error that is not JSON
--- has no class.
+-- Failed and dead points of all sweeps, latest first.
+-- $1 time, $2 sweep, $3 ordinal of the point before the first, $4 owner or null, $5 class of error or null,
+-- $6 largest number of rows.
+-- CROSS JOIN fixes the order of the tables: failures are few, and the index returns them in this order. An error that is not JSON has no
+-- class.
 SELECT s.id AS sweep_id, s.name AS sweep_name, s.owner, w.changed,
        p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, w.state, w.progress, w.attempts,
        w.error, NULL AS summary, NULL AS provenance

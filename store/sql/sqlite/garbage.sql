@@ -1,7 +1,7 @@
 -- name: DELETE_SCENARIOS
--- Deletes the scenarios that no work item changes any more.
+-- Deletes scenarios without a work item.
 DELETE FROM scenario WHERE NOT EXISTS (SELECT 1 FROM work WHERE work.base = scenario.hash)
 
 -- name: TRUNCATE_LOG
--- Folds the write-ahead log into the database and cuts it off.
+-- Moves the write-ahead log into the database and truncates it.
 PRAGMA wal_checkpoint(TRUNCATE)

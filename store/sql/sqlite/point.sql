@@ -1,7 +1,6 @@
 -- name: LIST
 -- Points of a sweep in order, without scenarios and results.
--- $1 sweep, $2 ordinal after which they are, $3 states of their work, a JSON array, or none for all,
--- $4 how many at most.
+-- $1 sweep, $2 ordinal before the first point, $3 states of their work (JSON array), or null for all, $4 largest number of rows.
 SELECT p.ordinal, p.parameters, w.key, NULL AS base, NULL AS changes, 
        CASE WHEN s.cancelled <> 0 AND w.stage_of_cancelled = 'cancelled' THEN 'cancelled' ELSE w.state END AS state,
        w.progress, w.attempts, w.error, NULL AS summary, NULL AS provenance

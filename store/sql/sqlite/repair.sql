@@ -1,6 +1,6 @@
 -- name: QUEUE
--- Queues a work item anew that is done. It is held while all live sweeps that have it are paused.
--- $1 work item, $2 its place in its owner's order.
+-- Queues a done work item again. It is held while all live sweeps with it are paused.
+-- $1 work item, $2 its position in its owner's order.
 UPDATE work SET
     state = 'queued', changed = (SELECT now FROM clock), vtime = $2, ready_at = (SELECT now FROM clock),
     error = NULL, progress = 0, checkpoint = NULL, crash_count = 0, failure_count = 0, cancel_requested = 0,

@@ -1,14 +1,14 @@
 -- name: LAST_POINT
--- The ordinal of the last point of a sweep, or of the last that one of its runs verifies; 0 without any.
+-- Ordinal of the last point of a sweep, or of the last that a run verifies; 0 without any.
 -- $1 sweep.
 SELECT max(coalesce((SELECT max(ordinal) FROM point WHERE sweep_id = $1 AND verifies = 0), 0),
            coalesce((SELECT max(ordinal) FROM point WHERE sweep_id = $1 AND verifies = 1), 0))
 
 -- name: LIST
--- Sweeps, newest first; what is none lets all through.
--- $1 owner, $2 sweep before which they are, $3 how many at most, $4 state, $5 part of the name, $6 tag, $7 what the identifier begins with.
--- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
--- are few.
+-- Sweeps, newest first; a null filter matches all.
+-- $1 owner, $2 last sweep of the previous page, $3 largest number of rows, $4 state, $5 part of the name, $6 tag, $7 beginning
+-- of the identifier.
+-- CROSS JOIN starts from the leased work items: the planner cannot know that they are few.
 SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
@@ -31,8 +31,7 @@ ORDER BY id DESC LIMIT $3
 -- name: ONE
 -- A sweep.
 -- $1 sweep.
--- Running points are looked up from the few leased work items: an explicit order, since the planner cannot know that they
--- are few.
+-- CROSS JOIN starts from the leased work items: the planner cannot know that they are few.
 SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
@@ -45,9 +44,9 @@ FROM sweep
 WHERE id = $1 AND hidden IS NULL
 
 -- name: PHYSICS_VERSIONS
--- Versions of the numbers of some sweeps. All points of a sweep are of one: the first tells.
+-- Physics versions of some sweeps: those of their first points, since all points of a sweep have the same.
 -- $1 the sweeps, a JSON array.
--- Gives: sweep, version; nothing of sweeps that are not there.
+-- Returns: sweep, version; nothing for missing sweeps.
 SELECT id, physics_version FROM (
     SELECT value AS id,
            (SELECT w.physics_version FROM point p JOIN work w ON w.key = p.work_key
@@ -56,8 +55,8 @@ SELECT id, physics_version FROM (
 WHERE physics_version IS NOT NULL
 
 -- name: RETRY_WORK
--- Queues the work of a sweep that failed or was cancelled, in the order of its points, the runs that verify them last.
--- $1 sweep, $2 owner, $3 the place before the first, $4 distance of the places.
+-- Queues the failed and cancelled work of a sweep in the order of its points, verification runs last.
+-- $1 sweep, $2 owner, $3 position before the first, $4 distance of positions.
 UPDATE work SET
     state = 'queued', changed = (SELECT now FROM clock), owner = $2, vtime = $3 + $4 * turn.number,
     error = NULL, progress = 0, crash_count = 0, failure_count = 0, cancel_requested = 0

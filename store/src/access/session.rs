@@ -1,4 +1,4 @@
-//! Sessions: browsers that have logged in by a token. A browser keeps a text of its own, not the token, and what it may do ends with either.
+//! Sessions: browsers that have logged in by a token. A browser keeps the session's secret, not the token; its permissions end with either.
 
 use crate::access::token::{TokenRecord, TokenSecret};
 use crate::engine::query::query;

@@ -18,7 +18,7 @@ pub enum TokenScope {
     Read,
     /// Submitting sweeps, and changing one's own.
     Submit,
-    /// Changing anybody's sweeps, and submitting in anybody's name.
+    /// Changing sweeps of any owner, and submitting for any owner.
     Admin,
 }
 

@@ -40,11 +40,11 @@ struct RetryLimits {
     silence: &'static str,
 }
 
-/// Limits of readers: somebody waits for the answer.
+/// Limits of reads, for which a client waits.
 const SHORT: RetryLimits =
     RetryLimits { retry: Duration::from_secs(10), pause: Duration::from_secs(1), silence: "10s" };
 
-/// Limits of writers of results that took minutes to compute: a restart of the service meanwhile costs nothing.
+/// Limits of writes of results that took minutes to compute: they outlast a restart of the service.
 const LONG: RetryLimits =
     RetryLimits { retry: Duration::from_secs(60), pause: Duration::from_secs(3), silence: "30s" };
 
@@ -54,7 +54,7 @@ const ONCE: RetryLimits = RetryLimits { retry: Duration::ZERO, pause: Duration::
 /// Directory or bucket of the objects, with all that differs between them. The stores are the same one but for the limits of their retries.
 #[derive(Debug, Clone)]
 pub(super) struct Backend {
-    /// Client for requests that somebody waits for.
+    /// Client for requests for which a client waits.
     pub(super) objects: Arc<dyn ObjectStore>,
     /// Client for writing results.
     pub(super) uploads: Arc<dyn ObjectStore>,
@@ -198,7 +198,7 @@ fn visit_unfinished(
     Ok(())
 }
 
-/// None of what is gone.
+/// `None` if the file does not exist any more.
 fn still_there<T>(found: std::io::Result<T>) -> std::io::Result<Option<T>> {
     match found {
         Ok(found) => Ok(Some(found)),

@@ -9,8 +9,8 @@ use object_store::client::{
 
 use crate::error::untrusted_certificate;
 
-/// Connects as `object_store` does by itself. That sends again whatever could not be sent; here a certificate is an error
-/// of its own, for which waiting does nothing.
+/// Connects as the default of `object_store`, which retries all failures to connect; here a refused certificate is a separate error, which
+/// a retry cannot resolve.
 #[derive(Debug)]
 pub(super) struct Connector;
 

@@ -21,7 +21,7 @@ pub struct NamedFile {
 }
 
 impl NamedFile {
-    /// Reads a file once, whatever its own position is; a large one is never in memory as a whole.
+    /// Reads a file once from its start, independent of its position; a large file is never in memory as a whole.
     ///
     /// # Errors
     /// It cannot be read.
@@ -73,7 +73,7 @@ pub(super) async fn send_file(
     Ok(())
 }
 
-/// A file is not any more what it was named by.
+/// A file has changed since it was named.
 pub(super) fn changed() -> StoreError {
     StoreError::LocalFile(std::io::Error::other("the file has changed while it was being stored"))
 }

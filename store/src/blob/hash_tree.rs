@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_is_told_from_a_changed_one_and_from_another_part() {
+    fn a_part_differs_from_a_changed_one_and_from_another_part() {
         const GROUP: usize = super::GROUP as usize;
         let content = content(3 * GROUP + 5);
         let tree = tree(&content, content.len()).expect("the name is the content's");

@@ -19,12 +19,11 @@ use crate::blob::object::{SCRATCH, StoredObject, path_of};
 use crate::blob_id::BlobId;
 use crate::error::{Result, StoreError};
 
-/// Content-addressed objects in a local directory or a bucket. A blob is written before the row that names it. Writing the
-/// same bytes again changes nothing, unless they were damaged meanwhile: then it mends them.
+/// Content-addressed objects in a local directory or a bucket. A blob is written before the row that names it. Writing the same bytes again
+/// changes nothing, unless the stored ones are damaged: then it repairs them.
 ///
-/// A service that does not answer is tried again: for 10 s by what reads, for 60 s by [`put`](Self::put) and
-/// [`put_file`](Self::put_file). Then the error [says so](StoreError::is_unavailable). A certificate that is not accepted is an error at
-/// once.
+/// Requests to a service that does not answer are retried, reads for 10 s, [`put`](Self::put) and [`put_file`](Self::put_file) for 60 s,
+/// and then fail as [unavailable](StoreError::is_unavailable). A refused certificate is an error at once.
 #[derive(Debug, Clone)]
 pub struct BlobStore {
     backend: Backend,
@@ -45,8 +44,8 @@ impl BlobStore {
         Ok(Self { backend: Backend::open(location, metrics)?, trees: Arc::default() })
     }
 
-    /// Writes a blob, durably, unless it is present. Contents under its name are read, and replaced in one step if it
-    /// is not what the name says, or cannot be read.
+    /// Writes a blob, durably, unless it is present. Existing content is read, and replaced atomically if its hash differs or it cannot be
+    /// read.
     ///
     /// # Errors
     /// The object store fails.
@@ -125,8 +124,8 @@ impl BlobStore {
         Ok(())
     }
 
-    /// Writes a blob of another store, unless it is here and whole. What does not agree with its name there is not written here, and a
-    /// large one is never in memory as a whole. Gives its size \[bytes\]; none of one that was here.
+    /// Copies a blob from another store, unless it is present and whole here. Content that does not match its hash is not copied, and a
+    /// large blob is never in memory as a whole. Returns its size \[bytes\]; `None` if it was present.
     ///
     /// # Errors
     /// [Damage](StoreError::is_damage) if the other store has lost it; else when either object store fails.
@@ -199,7 +198,7 @@ impl BlobStore {
         Ok(hasher.count())
     }
 
-    /// Reads a whole blob. What a disk has damaged is not passed on.
+    /// Reads a whole blob and verifies its hash.
     ///
     /// # Errors
     /// The blob is missing or damaged, or the object store fails.
@@ -230,8 +229,8 @@ impl BlobStore {
         Ok(file)
     }
 
-    /// Reads a range of a blob's bytes, cut off at its end. Only what was verified is handed out, as in [`get`](Self::get): the
-    /// first range of a blob takes a reading of the whole, any other one the groups of the hash tree that it touches.
+    /// Reads a range of a blob's bytes, up to its end, verified as in [`get`](Self::get): the first range of a blob requires a read of the
+    /// whole, later ones only the groups of the hash tree that they touch.
     ///
     /// # Errors
     /// The blob is missing or damaged, the range begins beyond its end or is empty, or the object store
@@ -330,7 +329,7 @@ impl BlobStore {
         self.backend.unfinished_uploads(cutoff).await
     }
 
-    /// Asks a bucket's service once for an object that there is not.
+    /// Requests a missing object from a bucket's service, once.
     ///
     /// # Errors
     /// Its certificate is not accepted. Other errors, and a missing answer, do not count.
@@ -355,7 +354,7 @@ impl BlobStore {
     }
 }
 
-/// A part of some bytes; what lies beyond their end is left out.
+/// A part of some bytes, up to their end.
 fn cut(bytes: &Bytes, range: Range<u64>) -> Bytes {
     let place = |at: u64| usize::try_from(at).unwrap_or(usize::MAX).min(bytes.len());
     bytes.slice(place(range.start)..place(range.end))

@@ -11,13 +11,13 @@ use crate::work::state::WorkState;
 /// Counts of rows and bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Census {
-    /// Work items that are not final, by state; `held` are those that only paused sweeps want.
+    /// Work items that are not final, by state; `held` counts those of paused sweeps alone.
     pub work: Vec<(&'static str, i64)>,
     /// Points of all sweeps, by state.
     pub points: Vec<(&'static str, i64)>,
     /// Sweeps.
     pub sweeps: i64,
-    /// Workers heard of within the given time.
+    /// Workers with a heartbeat within the given time.
     pub workers: i64,
     /// Age of the oldest work item that is ready \[ms\].
     pub oldest_queued_ms: i64,

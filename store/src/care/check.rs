@@ -25,9 +25,8 @@ pub struct CheckReport {
 }
 
 impl Store {
-    /// Reads everything and compares: pages and references of the database, finished work against results, sizes and
-    /// hashes of the blobs that results name. Changes nothing; the service may run meanwhile. What it finds lost
-    /// [`repair`](Self::repair) queues anew.
+    /// Reads everything and compares: pages and references of the database, finished work against results, sizes and hashes of the blobs
+    /// that results name. Changes nothing; the service may run at the same time. [`repair`](Self::repair) queues the losses that it finds.
     ///
     /// # Errors
     /// The database cannot be read. Contents that can be read but are wrong are reported, and are no error.

@@ -1,9 +1,9 @@
-//! Garbage collection of what a retention policy does not keep.
+//! Garbage collection by a retention policy.
 //!
-//! Rows name what is wanted; blobs that no row names, and that nobody reserved for a row to come, are deleted after a grace time. That a
-//! blob is about to be deleted is noted under the lock under which it is looked whether it may be; deleted it is after that, for an object
-//! store may be slow. Nobody reserves it meanwhile, and no other collector deletes it: so a blob that a worker has found to exist cannot
-//! vanish behind its back, however many collect at once.
+//! Blobs without a row and without a reservation are deleted after a grace time. The check that a blob is unused and the lock against its
+//! reservation are one transaction; the deletion follows outside of it, since an object store may be slow. While the lock lasts the blob
+//! cannot be reserved, nor deleted by another collector: a blob that a worker has found to exist cannot vanish, however many collectors run
+//! at once.
 
 use std::collections::{BTreeMap, HashSet};
 use std::time::{Duration, Instant};
@@ -98,11 +98,11 @@ impl Garbage {
 }
 
 impl Store {
-    /// Deletes expired data and unreferenced blobs, and reports their numbers; a dry run only reports. The time of the last collection is noted. Each kind of
-    /// row is deleted by itself, so that nobody has to wait for all of them.
+    /// Deletes expired data and unreferenced blobs, and reports their numbers; a dry run only reports. The time of the last collection is
+    /// stored. Each kind of row is deleted in its own transaction, so that other writers wait for one at most.
     ///
     /// # Errors
-    /// The database or the object store fails; what was deleted until then stays deleted.
+    /// The database or the object store fails; data deleted until then stay deleted.
     pub async fn collect_garbage(&self, policy: &RetentionPolicy, is_dry_run: bool) -> Result<Garbage> {
         if is_dry_run {
             return self.collect(policy, true).await;
@@ -180,8 +180,7 @@ impl Store {
         self.write().await
     }
 
-    /// Deletes those of the objects that no row names now, and that nobody has reserved for one; of unfinished uploads those that nobody has
-    /// reserved.
+    /// Deletes objects without a row and without a reservation, and unfinished uploads without a reservation.
     async fn delete_unnamed(&self, objects: &[StoredObject]) -> Result<Vec<StoredObject>> {
         let began = Instant::now();
         let mut unwanted = Vec::new();
@@ -251,7 +250,7 @@ async fn delete_expired_sweeps(tx: &mut Transaction, now: i64) -> Result<u64> {
     query(sql::garbage::DELETE_SWEEPS).bind(now).execute(&mut *tx).await
 }
 
-/// Work that is final and that no point wants, with its result and artifacts.
+/// Deletes final work without a point, with its result and artifacts.
 async fn delete_unwanted_work(tx: &mut Transaction) -> Result<u64> {
     let results = query(sql::garbage::DELETE_RESULTS).execute(&mut *tx).await?;
     query(sql::garbage::DELETE_WORK).execute(&mut *tx).await?;
@@ -279,7 +278,7 @@ async fn expire_artifacts(tx: &mut Transaction, policy: &RetentionPolicy, now: i
     Ok(expired)
 }
 
-/// Events, idempotency keys, workers and owners' turns that nobody will request; returns the number of events.
+/// Deletes expired events, idempotency keys, workers and owners' turns; returns the number of events.
 async fn delete_old_rows(tx: &mut Transaction, policy: &RetentionPolicy, now: i64) -> Result<u64> {
     let events = query(sql::garbage::DELETE_EVENTS)
         .bind(now.saturating_sub(milliseconds(policy.events)))

@@ -1,4 +1,4 @@
-//! Computing anew what rows name and the object store cannot give.
+//! Recomputation of results whose blobs are lost or damaged.
 
 use crate::blob_id::BlobId;
 use crate::care::check::CheckReport;
@@ -19,7 +19,7 @@ pub enum Repair {
     UnderWay,
     /// Its work was queued for the same loss before, and has ended without a new result.
     TriedBefore,
-    /// It is of this version of the numbers, and nobody computes that any more.
+    /// It is of this physics version, which no worker computes any more.
     OtherNumbers(i64),
     /// It has another table in that place by now, or none.
     Replaced,
@@ -32,7 +32,7 @@ pub struct RepairReport {
     pub queued: u64,
     /// Work items that were queued or under way already.
     pub under_way: u64,
-    /// Work items of another version of the numbers, which nobody computes any more.
+    /// Work items of another physics version, which no worker computes any more.
     pub other_numbers: u64,
 }
 
@@ -44,9 +44,8 @@ enum Tries {
 }
 
 impl Store {
-    /// Queues the work anew whose result names a blob that [is damaged](crate::StoreError::is_damage): once for a result, so that
-    /// readers of a table that cannot be computed again do not keep the workers busy. `physics_version` is the one that workers
-    /// compute.
+    /// Queues work again whose result names a [damaged](crate::StoreError::is_damage) blob: once for a result, so that reads of an
+    /// irreparable table do not occupy workers repeatedly. `physics_version` is that of the workers.
     ///
     /// # Errors
     /// The database fails.
@@ -64,12 +63,12 @@ impl Store {
         tx.commit().await?;
         if repair == Repair::Queued {
             let key = blake3::Hash::from_bytes(*key).to_hex();
-            tracing::warn!(key = key.as_str(), %blob, "a damaged result is computed again");
+            tracing::warn!(key = key.as_str(), %blob, "a damaged result is queued for recomputation");
         }
         Ok(repair)
     }
 
-    /// Queues all work anew that a check has found without a result, or with one that has lost a table.
+    /// Queues all work again that a check has found without a result or with a damaged one.
     ///
     /// # Errors
     /// The database fails.

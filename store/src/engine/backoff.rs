@@ -7,8 +7,8 @@ use crate::error::Result;
 /// Time for which a process waits for its database: as long as for its object store.
 const RETRY_FOR: Duration = Duration::from_secs(60);
 
-/// Retries with backoff for a minute, as long as the database is busy or does not answer. Once the store is open, servers report such
-/// an error to their clients and workers retry by themselves: this is for what comes before that.
+/// Retries with backoff for a minute, as long as the database is busy or does not answer. It serves the opening of a store; later, servers
+/// report such an error to their clients, and workers retry by themselves.
 ///
 /// # Errors
 /// The error of the last attempt.
@@ -20,7 +20,7 @@ pub async fn with_backoff<T, F: Future<Output = Result<T>>>(mut attempt: impl Fn
     loop {
         match attempt().await {
             Err(error) if error.is_busy() && Instant::now() + pause < deadline => {
-                tracing::warn!(%error, "the database does not answer; trying again");
+                tracing::warn!(%error, "the database does not answer; retrying");
             }
             ended => return ended,
         }
@@ -38,7 +38,7 @@ mod tests {
     use crate::error::StoreError;
 
     #[tokio::test]
-    async fn what_passes_is_waited_for_and_what_stays_is_told_at_once() {
+    async fn transient_failures_are_retried_and_permanent_ones_returned_at_once() {
         let broken_off = || StoreError::Database(sqlx::Error::Io(Error::from(ErrorKind::ConnectionReset)));
         let attempts = Cell::new(0);
         let attempt = |until: i32, lasting: fn() -> StoreError| {

@@ -1,9 +1,8 @@
 //! Connections to a PostgreSQL server: a pool, and one in addition for single users.
 //!
-//! The pool asks the server of each connection that it is given back whether it is still there, and hands that out last of all. A worker, whose
-//! statements follow each other, would send twice as many messages as it has statements, and go through all of the pool's connections, in
-//! each of which the server keeps the schema and the statements' plans anew. So the connection that was used last is kept at hand, and
-//! taken again by the next that needs one; the pool's are for those who come meanwhile.
+//! The pool pings each returned connection and reuses it last. A worker, whose statements are sequential, would send two messages for each
+//! statement and cycle through all connections of the pool, each with its own copy of schema and plans on the server. The connection used
+//! last is therefore kept outside of the pool for the next user; concurrent users take connections of the pool.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -48,7 +47,7 @@ pub(crate) struct AtHand {
     used: Instant,
 }
 
-/// A connection in use. Unless it is given back it is closed, by which the server undoes what has not been committed.
+/// A connection in use. Without a return it is closed, so that the server rolls back its transaction.
 pub(crate) enum Lent {
     Own(Box<AtHand>, OwnedMutexGuard<Option<AtHand>>),
     OfPool(Pooled),
@@ -71,7 +70,7 @@ impl Connections {
         &self.pool
     }
 
-    /// A connection: the one at hand, unless somebody else has it.
+    /// A connection: the kept one, or one of the pool if that is in use.
     ///
     /// # Errors
     /// No connection can be made, or none becomes free in time.

@@ -157,8 +157,8 @@ impl Database {
 }
 
 impl Query {
-    /// Runs a statement that changes the state of a work item if it gives rows, and gives these; what follows from that for others is done
-    /// after it.
+    /// Runs a statement that changes the state of a work item if it returns rows, and returns these; the consequences for sweeps are
+    /// applied after it.
     pub(crate) async fn rows_of_change<T: Record>(self, database: &Database) -> Result<Vec<T>> {
         let rows = self.rows(database).await?;
         if !rows.is_empty() {

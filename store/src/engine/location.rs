@@ -48,12 +48,14 @@ impl FromStr for DatabaseLocation {
         if text.starts_with("postgres://") || text.starts_with("postgresql://") {
             return match text.parse() {
                 Ok(options) => Ok(DatabaseLocation::Postgres(Box::new(options))),
-                Err(error) => Err(StoreError::Location(format!("no URL of a PostgreSQL database: {error}"))),
+                Err(error) => {
+                    Err(StoreError::Location(format!("not a URL of a PostgreSQL database: {error}")))
+                }
             };
         }
         if let Some((scheme, _)) = text.split_once("://") {
             return Err(StoreError::Location(format!(
-                "no database by {scheme}://: give postgres://user@host/name, or the path of a SQLite file"
+                "unsupported database scheme {scheme}://: give postgres://user@host/name, or the path of a SQLite file"
             )));
         }
         if text.is_empty() {

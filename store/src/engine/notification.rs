@@ -1,7 +1,7 @@
 //! Notifications of changes, so that waiting processes need not poll often.
 //!
 //! PostgreSQL notifies its listeners when a transaction commits (`NOTIFY`, by the triggers of the schema). A notification may be lost with
-//! a connection, so that polling goes on behind it, less often. SQLite has no notifications: there polling is all.
+//! a connection, so polling continues at a lower rate. SQLite has no notifications: there all processes poll.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -49,7 +49,7 @@ impl Changes {
     }
 }
 
-/// The one listener of all waiters of a store; there is none before somebody waits.
+/// The one listener of all waiters of a store, created by the first waiter.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Listening(Arc<Mutex<Option<Listener>>>);
 

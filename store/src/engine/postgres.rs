@@ -1,10 +1,10 @@
 //! PostgreSQL: a team's engine, for many machines.
 //!
-//! Writers that change the state of work items only note the changes; what follows from them for others is applied in batches
-//! (migrations/postgres/0001_schema.sql). Everybody who has committed such a change calls `apply_transitions`, which leaves it to
-//! whoever is applying others at that moment, and who does so calls it again until nothing is left: so all changes are applied once all
-//! those who have made them have returned. The procedure `finish_and_claim` does the same by itself, after its commit. Readers of what
-//! follows from changes call it now and then as well, since a process may have died in between.
+//! Writers that change the state of work items only record the changes; consequences for sweeps and points are applied in batches
+//! (migrations/postgres/0001_schema.sql). After its commit each writer calls `apply_transitions`, which returns at once if another process
+//! applies changes at that moment; that process repeats until nothing is pending. All changes are therefore applied once all their writers
+//! have returned. The procedure `finish_and_claim` does the same after its commit. Readers of consequences call it from time to time, too,
+//! since a process may have died in between.
 
 use sqlx::postgres::{PgConnectOptions, PgConnection, PgPoolOptions};
 use sqlx::{AssertSqlSafe, Connection as _, Executor as _};
@@ -14,8 +14,8 @@ use crate::engine::migration;
 use crate::engine::role::Role;
 use crate::error::{Result, not_connected};
 
-/// Time for which a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off in the middle of one
-/// holds nobody up for longer.
+/// Time for which a statement waits for a lock, and an idle transaction keeps its own: a machine that is cut off within a transaction
+/// blocks others for no longer.
 const LOCK_TIMEOUT: &str = "30s";
 
 /// Takes the writers' advisory lock shared; the schema's functions use the same arbitrary key.
@@ -24,7 +24,7 @@ const BESIDE_OTHERS: &str = "SELECT pg_advisory_xact_lock_shared(723796346553469
 /// Begins a transaction that sees one state of the database and changes nothing.
 const READ: &str = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
 
-/// Applies what is pending, unless somebody else does; gives whether it has done so.
+/// Applies pending changes, unless another process does; true if it has applied them.
 const APPLY: &str = "SELECT apply_transitions()";
 
 /// Connects to a server and brings the schema up to date. Any number of processes may do so at once.
@@ -117,8 +117,8 @@ impl PostgresTransaction {
         Self::begin(connections, READ.to_owned()).await
     }
 
-    /// The same, and in that state nothing is pending. What is pending is applied before, if the schema knows of such, though the
-    /// connection may be one that changes nothing by default.
+    /// The same, in a state without pending changes. They are applied first, if the schema has them, although the connection may be
+    /// read-only by default.
     pub(crate) async fn read_applied(connections: &Connections) -> Result<Self> {
         let mut begun = Self { connection: connections.lend().await? };
         let is_known: bool = sqlx::query_scalar("SELECT to_regproc('apply_pending_transitions') IS NOT NULL")
@@ -142,7 +142,7 @@ impl PostgresTransaction {
         Ok(begun)
     }
 
-    /// One that holds the writers' lock exclusively. What follows from its changes is done with each of its statements.
+    /// A transaction that holds the writers' lock exclusively. Consequences of its changes are applied with each of its statements.
     pub(crate) async fn alone(connections: &Connections) -> Result<Self> {
         Self::begin(connections, "BEGIN; SELECT write_alone()".to_owned()).await
     }
@@ -182,11 +182,11 @@ impl PostgresTransaction {
     }
 }
 
-/// Applies what is pending, until nothing is left or somebody else is at it. If that fails, the changes from which it follows stand
-/// nevertheless, and the next one that comes applies it.
+/// Applies pending changes until none is left or another process applies them. If that fails, the changes remain committed, and the next
+/// caller applies their consequences.
 pub(crate) async fn apply_transitions(connections: &Connections) {
     if let Err(error) = apply_all(connections).await {
-        tracing::warn!(%error, "the consequences of changes of points are left to others");
+        tracing::warn!(%error, "pending changes of points are left to other processes");
     }
 }
 

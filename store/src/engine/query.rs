@@ -49,7 +49,7 @@ pub(crate) enum Session<'c> {
     PostgresAny(&'c Connections),
 }
 
-/// A parameter. What is absent still has a type: PostgreSQL wants to know it.
+/// A parameter. An absent one has a type, too, which PostgreSQL requires.
 #[derive(Debug, Clone)]
 pub(crate) enum Value {
     Integer(Option<i64>),

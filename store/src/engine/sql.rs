@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn every_statement_of_the_files_is_listed_and_says_what_its_parameters_are() {
+    fn every_statement_of_the_files_is_listed_and_documents_its_parameters() {
         for (engine, text) in ENGINES {
             let mut files = self::files("");
             for (name, statement) in self::files(engine) {
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_the_same_on_both_engines_is_written_once() {
+    fn a_statement_common_to_both_engines_is_written_once() {
         let (sqlite, postgres) = (files("sqlite"), files("postgres"));
         for (name, (_, statement)) in &sqlite {
             assert_ne!(*statement, postgres[name].1, "{name}");
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_clock_tells_the_time() {
+    fn only_the_clock_reads_the_time() {
         let clocks =
             ["julianday", "unixepoch", "current_timestamp", "strftime", "datetime", "now()", "_timestamp"];
         for (name, statement) in ALL {

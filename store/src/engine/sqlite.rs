@@ -153,10 +153,9 @@ const OPENING_TIMEOUT: Duration = Duration::from_secs(10);
 /// Interval of checks for the end of their opening.
 const OPENING_POLL: Duration = Duration::from_millis(10);
 
-/// Waits for other processes that are opening the same database. Turning a new file to write-ahead logging fails at once with
-/// "database is locked" while another process does the same, whatever the busy timeout is, and sqlx's migrations take
-/// no lock on SQLite. The lock ends with the file's handle, and with the process; one that was stopped while it held the
-/// lock must not keep all others out, so these open without it in the end.
+/// Waits for other processes that are opening the same database. Switching a new file to write-ahead logging fails at once with "database
+/// is locked" while another process does the same, regardless of the busy timeout, and sqlx's migrations take no lock on SQLite. The lock
+/// ends with the file's handle and with the process. After a timeout others open without it, so that a stopped holder does not block them.
 async fn lock_opening(database: &Path) -> Result<File> {
     let mut path = OsString::from(database);
     path.push(".lock");

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// whose consequences a dead process has left undone: looking costs as much as claiming or reading.
 pub(crate) const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// Throttle of looks for something to do that nobody notified a process of: one a [`LOOK_EVERY`].
+/// Throttle of searches for work without a notification: one a [`LOOK_EVERY`].
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Throttle(Arc<Mutex<Option<Instant>>>);
 

@@ -8,9 +8,9 @@ use crate::store::Store;
 use crate::work::order::{PLACE_OF_A_POINT, POINTS_AT_ONCE, end_of_order};
 
 impl Store {
-    /// Cancels a sweep: its points that no other live sweep wants are cancelled, and the runs that verify them; those under way as
-    /// soon as their worker hears of it. What goes on for another sweep counts as cancelled for this one, until there is a result.
-    /// False if there is no such sweep.
+    /// Cancels a sweep: its points and verification runs that no other live sweep needs are cancelled, leased ones at their worker's next
+    /// renewal. Work that continues for another sweep counts as cancelled for this one, until there is a result. False if there is no such
+    /// sweep.
     ///
     /// # Errors
     /// The database fails.
@@ -38,12 +38,12 @@ impl Store {
         Ok(is_whole)
     }
 
-    /// Brings to its end what processes that died have left: sweeps whose work is not all cancelled, and hidden ones that
-    /// nobody has worked on for `silence_ms`, because not all of their points were stored, or deleted. Tells how many sweeps that were.
+    /// Completes changes that dead processes have left: cancelled sweeps with work that is not cancelled, and hidden sweeps without
+    /// progress for `silence_ms`, whose points were partly stored or deleted. Returns the number of sweeps.
     ///
     /// # Errors
     /// The database fails.
-    pub async fn finish_what_was_begun(&self, silence_ms: i64) -> Result<u64> {
+    pub async fn finish_partial_changes(&self, silence_ms: i64) -> Result<u64> {
         let hidden: Vec<String> =
             query(sql::sweep::LEFT_HIDDEN).bind(silence_ms).scalars(&self.database).await?;
         for id in &hidden {
@@ -56,7 +56,7 @@ impl Store {
         Ok((hidden.len() + cancelled.len()) as u64)
     }
 
-    /// Deletes a hidden sweep by and by, so that nobody has to wait for all of it.
+    /// Deletes a hidden sweep in parts, so that other writers wait for one part at most.
     pub(crate) async fn take_away(&self, id: &str) -> Result<()> {
         self.cancel_sweep(id).await?;
         let mut deleted_to = 0;
@@ -79,8 +79,8 @@ impl Store {
         }
     }
 
-    /// Pauses a sweep or lets it go on: while it is paused its points are not handed out, but for those that another
-    /// live sweep wants; points under way go on. False if there is no such sweep.
+    /// Pauses or resumes a sweep: while it is paused its points are not claimed, unless another live sweep needs them; leased points
+    /// continue. False if there is no such sweep.
     ///
     /// # Errors
     /// The database fails.
@@ -94,8 +94,8 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Changes what can be changed of a sweep. Work that is open takes the priority of the most urgent live sweep that has
-    /// it. If a revision is expected, a sweep of another one stays as it is.
+    /// Changes the editable fields of a sweep. Open work takes the highest priority of the live sweeps that have it. If a revision is
+    /// expected, a sweep of another revision is not changed.
     ///
     /// # Errors
     /// The database fails.
@@ -171,8 +171,8 @@ impl Store {
         })
     }
 
-    /// Queues the failed and cancelled points of a sweep, and the runs that verify them, again, behind what their owner has in the
-    /// queue; returns the number of work items, or none if there is no such sweep. A cancelled sweep is wanted again.
+    /// Queues the failed and cancelled points and verification runs of a sweep again, behind the other work of their owner; returns the
+    /// number of work items, or `None` if there is no such sweep. The cancellation of a cancelled sweep is withdrawn.
     ///
     /// # Errors
     /// The database fails.
@@ -201,7 +201,7 @@ impl Store {
 pub enum ChangeOutcome {
     /// It is made.
     Changed,
-    /// Somebody changed the sweep since the revision that was expected; it stays as it is.
+    /// The sweep has another revision than the expected one; it is not changed.
     OtherRevision,
     /// There is no such sweep.
     NoSuchSweep,
@@ -223,7 +223,7 @@ pub enum DeleteOutcome {
     Pinned,
     /// Some of its points are not final; it stays.
     Unfinished,
-    /// Somebody changed the sweep since the revision that was expected; it stays.
+    /// The sweep has another revision than the expected one; it is not deleted.
     OtherRevision,
     /// There is no such sweep.
     NoSuchSweep,
@@ -238,7 +238,7 @@ pub struct SweepChanges {
     pub priority: Option<i64>,
     /// Its tags, as a JSON array.
     pub tags_json: Option<String>,
-    /// True to keep it and all that belongs to it, whatever its age.
+    /// True to keep the sweep and its data regardless of age.
     pub is_pinned: Option<bool>,
     /// Time of expiry \[ms since the epoch\]: the first collection after it deletes the sweep, if all its points are final and it is
     /// not pinned; `None` means never.
@@ -259,7 +259,7 @@ async fn cancel_next(tx: &mut Transaction, id: &str) -> Result<bool> {
     Ok(last >= points)
 }
 
-/// Holds back or lets go what a sweep has in the queue: work is held while only paused sweeps want it.
+/// Holds or releases the queued work of a sweep: work is held while all live sweeps that need it are paused.
 async fn hold_back(tx: &mut Transaction, id: &str) -> Result<()> {
     query(sql::sweep::HOLD_BACK).bind(id).bind(0).bind(i64::MAX).execute(&mut *tx).await?;
     Ok(())

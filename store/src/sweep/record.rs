@@ -29,7 +29,7 @@ pub struct SweepRecord {
     pub is_cancelled: bool,
     /// True while its points are not handed out.
     pub is_paused: bool,
-    /// True if it and all that belongs to it is kept whatever its age.
+    /// True if the sweep and its data are kept regardless of age.
     pub is_pinned: bool,
     /// Time from which it may be deleted \[ms since the epoch\].
     pub expires: Option<i64>,
@@ -54,7 +54,7 @@ pub struct SweepFilter<'a> {
     pub owner: Option<&'a str>,
     /// In this state: `running`, `paused`, `completed` or `cancelled`.
     pub state: Option<&'a str>,
-    /// With this text in their name, in whatever case of ASCII letters.
+    /// Text in the name, ignoring the case of ASCII letters.
     pub name: Option<&'a str>,
     /// With this tag.
     pub tag: Option<&'a str>,

@@ -149,11 +149,11 @@ pub enum SubmitOutcome {
 }
 
 impl Store {
-    /// Stores a sweep with all its points: nobody sees it before all of them are stored, but a large one does not keep others from
-    /// writing, and its first points may be computed before. Work that is known is not done again, unless the sweep asks
-    /// for it: a finished point counts at once, a failed one stays failed, a cancelled one is queued again.
+    /// Stores a sweep with all its points. It is visible once all of them are stored; a large one does not block other writers, and its
+    /// first points may be computed before. Known work is reused, unless the sweep requests recomputation: a finished point counts at once,
+    /// a failed one stays failed, a cancelled one is queued again.
     ///
-    /// If this is not awaited to its end, [`finish_what_was_begun`](Self::finish_what_was_begun) takes the remains away.
+    /// If the call is dropped, [`finish_partial_changes`](Self::finish_partial_changes) removes the remains.
     ///
     /// # Errors
     /// The idempotency key was used for another request, or the database fails.
@@ -183,14 +183,14 @@ impl Store {
             Err(error) => {
                 // Its remains are hidden, and if this fails too they are taken away later.
                 if let Err(error) = self.take_away(&sweep.id).await {
-                    tracing::warn!(%error, sweep = sweep.id, "half a sweep is left for later");
+                    tracing::warn!(%error, sweep = sweep.id, "a partially stored sweep is left to a later cleanup");
                 }
                 Err(error)
             }
         }
     }
 
-    /// Stores the points of a hidden sweep by and by, so that nobody has to wait for all of them, and shows it.
+    /// Stores the points of a hidden sweep in parts, so that other writers wait for one part at most, and shows it.
     async fn store_points(
         &self,
         mut tx: Transaction,
@@ -236,7 +236,7 @@ impl Store {
             // Before it is seen, so that it is read by plans for its size, and while others may write. It can be read without.
             tx.commit_for_now().await?;
             if let Err(error) = query(sql::submit::ANALYZE).execute(&self.database).await {
-                tracing::warn!(%error, "the planner's statistics are left as they were");
+                tracing::warn!(%error, "the planner's statistics could not be updated");
             }
             tx = self.write().await?;
         }

@@ -20,7 +20,7 @@ pub struct Lease {
 pub enum Renewal {
     /// The lease is extended.
     Held,
-    /// The lease is extended, and nobody wants the result any more.
+    /// The lease is extended, and a cancellation is requested.
     CancelRequested,
     /// The work item was claimed again: nothing that is computed now will be taken.
     Lost,

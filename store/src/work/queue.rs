@@ -62,13 +62,13 @@ pub struct QueueDepths {
     pub waiting: i64,
     /// Ready to be claimed.
     pub queued: i64,
-    /// Ready, but wanted by paused sweeps only.
+    /// Ready, but of paused sweeps alone.
     pub held: i64,
     /// Under way.
     pub leased: i64,
 }
 
-/// Outcome of a result whose worker wanted to go on with the next work item.
+/// Outcome of a result whose worker claims the next work item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
     /// True if the result is stored; false if the lease was lost.
@@ -152,7 +152,7 @@ impl Store {
         claimed(claiming(worker, physics_version, lease_ms).rows(tx).await?, worker)
     }
 
-    /// Extends a lease, stores the progress (0 to 1) and brings a cancellation back.
+    /// Extends a lease, stores the progress (0 to 1) and reports a requested cancellation.
     ///
     /// # Errors
     /// The database fails.
@@ -162,8 +162,8 @@ impl Store {
 
     /// Stores a result. False if the lease was lost: then nothing is written.
     ///
-    /// A result that was recomputed takes the place of the one before, with its artifacts. If it should be the same and
-    /// is not, its provenance says so for good: `disagreement` has what differs, and the provenance of the one before.
+    /// A recomputed result replaces the earlier one, with its artifacts. If it should be equal and is not, `disagreement` in its provenance
+    /// permanently records the difference and the provenance of the earlier result.
     ///
     /// # Errors
     /// The database fails, or a blob is not there.
@@ -249,7 +249,7 @@ impl Store {
                 tracing::warn!(
                     key = key.as_str(),
                     differences,
-                    "a recomputed result differs from the one before"
+                    "a recomputed result differs from the earlier one"
                 );
                 note_disagreement(&mut tx, lease.key.as_slice(), &differences, &earlier.provenance).await?;
             } else if earlier.disagrees {
@@ -278,8 +278,7 @@ impl Store {
         self.leave(sql::queue::CANCEL, lease, error_json).await
     }
 
-    /// Keeps the blob from which the work can go on, written before; the next claim brings it. False if the lease was
-    /// lost.
+    /// Stores the checkpoint of the work, a blob that is written before; the next claim returns it. False if the lease was lost.
     ///
     /// # Errors
     /// The database fails.
@@ -297,8 +296,8 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Notes facts about the worker of a lease, for the reason of its point's failure if it is heard of no more: what follows "the
-    /// last one", such as "was ended by signal 9". False if the lease was lost.
+    /// Stores a note about the worker of a lease, for the failure of its point if the worker dies: the text after "the last one", such as
+    /// "was ended by signal 9". False if the lease was lost.
     ///
     /// # Errors
     /// The database fails.
@@ -323,8 +322,8 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Gives work back untried, as when a worker has to stop. Work that nobody wants any more ends cancelled.
-    /// False if the lease was lost.
+    /// Releases work without counting an attempt, as when a worker has to stop. Work with a requested cancellation ends cancelled. False if
+    /// the lease was lost.
     ///
     /// # Errors
     /// The database fails.
@@ -356,11 +355,10 @@ impl Store {
         Ok(changed == 1)
     }
 
-    /// Takes work back from workers that are silent beyond their lease, and wakes retries that are due. Tells how
-    /// many leases had run out.
+    /// Ends expired leases and queues retries that are due. Returns the number of expired leases.
     ///
-    /// A clock that was set back holds nothing up: a lease or a wait that ends later than it could, had it begun now, is
-    /// brought forward. Leases get their whole length once more, in which a living worker renews them.
+    /// A clock that was set back delays nothing: a lease or wait that ends later than it would from now on is shortened. Such leases get
+    /// their full length from now, within which a living worker renews them.
     ///
     /// # Errors
     /// The database fails.
@@ -368,7 +366,7 @@ impl Store {
         Ok(self.reap().await?.unwrap_or(0))
     }
 
-    /// The same if nobody has looked lately, neither this process nor another one of the same server. Tells whether it has looked.
+    /// The same unless this process, or another one of the same server, has searched recently. True if it has searched.
     async fn reap_now_and_then(&self) -> Result<bool> {
         let is_due = self.reaping.is_due()
             && query(sql::queue::BEGIN_TO_LOOK)
@@ -381,7 +379,7 @@ impl Store {
         Ok(is_due)
     }
 
-    /// Looks for what is due, and takes it back; none if nothing was.
+    /// Ends expired leases and queues due retries; `None` if nothing was due.
     async fn reap(&self) -> Result<Option<u64>> {
         // Most of the time there is nothing: look before taking the write lock.
         let is_due: bool =
@@ -401,16 +399,16 @@ impl Store {
         tx.commit().await?;
         for (state, crashes, owner, note) in &expired {
             self.metrics.lease_expired(state);
-            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease ran out");
+            tracing::warn!(worker = owner.as_deref().unwrap_or("?"), crashes, state, note, "lease expired");
         }
         Ok(Some(expired.len() as u64))
     }
 
-    /// Ends work whose version of the numbers is earlier than the one that is computed now, and that no worker heard of within the last
-    /// `silence_ms` computes: it would wait for ever. Tells how much that was.
+    /// Ends waiting work of an earlier physics version that no worker with a heartbeat within the last `silence_ms` computes. Returns the
+    /// number of work items.
     ///
     /// # Errors
-    /// The database fails; what was ended until then stays so.
+    /// The database fails; work ended until then stays ended.
     pub async fn end_outdated(&self, physics_version: i64, silence_ms: i64) -> Result<u64> {
         let mut ended = 0;
         loop {

@@ -1,8 +1,8 @@
-//! Blobs for rows to come.
+//! Reservation of blobs for future rows.
 //!
-//! A blob is written before the row that names it, and no lock is held while it is: an object store may be slow, and everybody would wait
-//! for it. Instead the blob is reserved, for an hour. The collector deletes what no row names and nobody has reserved, and notes that it
-//! is about to; a worker that wants to reserve such a blob waits until it is gone, and writes it again.
+//! A blob is written before the row that names it, without a lock, since an object store may be slow and all writers would wait for it.
+//! Instead the blob is reserved for an hour. The collector deletes blobs without a row and without a reservation, and locks each first; a
+//! worker waits to reserve such a blob until it is deleted, and writes it again.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -89,7 +89,7 @@ impl Store {
         Ok((file.id(), file.bytes()))
     }
 
-    /// Reserves a blob, once nobody is deleting it.
+    /// Reserves a blob, after a running deletion of it has ended.
     async fn reserve_one(&self, blob: BlobId) -> Result<()> {
         let wanted = json!([blob.to_string()]).to_string();
         loop {
@@ -124,7 +124,7 @@ mod tests {
     use crate::store::StoreConfig;
 
     #[tokio::test]
-    async fn who_wants_a_blob_that_is_being_deleted_waits_and_writes_it_again() {
+    async fn a_write_to_a_blob_under_deletion_waits_and_rewrites_it() {
         let directory = tempfile::tempdir().unwrap();
         let store = Store::open(&StoreConfig::in_directory(directory.path(), Role::Worker)).await.unwrap();
         let blob = BlobId::of(b"history");

@@ -1,6 +1,6 @@
 //! Scenarios as they are stored.
 
-/// Text of a scenario: a base that many points share, and what one of them changes in it.
+/// Text of a scenario: a base that many points share, and the changes of one of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioText {
     /// The base as JSON text.

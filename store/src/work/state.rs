@@ -20,7 +20,7 @@ pub enum WorkState {
     Failed,
     /// Its workers died too often.
     Dead,
-    /// Nobody wants it any more.
+    /// No sweep needs it any more.
     Cancelled,
 }
 

@@ -50,8 +50,8 @@ impl Store {
         Ok(())
     }
 
-    /// Takes the word of a worker's supervisor that its process is gone: its leases end now, and the next claim sees them as run
-    /// out, with what is known of its end (as [`note_worker`](Self::note_worker) has it). Returns how many there were.
+    /// Expires the leases of a process that its supervisor reports as dead, with a note about its end (as
+    /// [`note_worker`](Self::note_worker)); the next claim ends them. Returns their number.
     ///
     /// # Errors
     /// The database fails.
@@ -66,8 +66,8 @@ impl Store {
         Ok(ended)
     }
 
-    /// Workers heard of within the last `within_ms` milliseconds, oldest first. One that was last heard of in the future, as it
-    /// seems after the clock was set back, has been silent since.
+    /// Workers with a heartbeat within the last `within_ms` milliseconds, oldest first. A heartbeat too far in the future, as after the
+    /// clock was set back, does not count.
     ///
     /// # Errors
     /// The database fails.

@@ -55,7 +55,7 @@ async fn a_range_is_cut_from_the_content<P: Place>() {
     }
 }
 
-async fn what_is_damaged_is_replaced_when_it_is_written_again<P: Place>() {
+async fn a_damaged_blob_is_replaced_by_the_next_write<P: Place>() {
     let place = P::new();
     let blobs = place.open();
     let content = b"orbit".repeat(1_000);
@@ -172,7 +172,7 @@ in_every_place! {
     the_name_is_the_blake3_hash_of_the_content,
     the_same_content_is_stored_once_and_never_rewritten,
     a_range_is_cut_from_the_content,
-    what_is_damaged_is_replaced_when_it_is_written_again,
+    a_damaged_blob_is_replaced_by_the_next_write,
     a_file_is_the_blob_of_its_bytes,
     a_file_that_changes_before_it_is_written_is_no_blob,
     no_range_of_a_damaged_blob_is_handed_out,

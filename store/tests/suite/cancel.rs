@@ -31,7 +31,7 @@ pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_ren
     assert!(!store.cancel_sweep("t").await.unwrap());
 }
 
-pub(crate) async fn work_that_another_live_sweep_wants_goes_on<E: Engine>() {
+pub(crate) async fn work_of_another_live_sweep_continues<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2, 3])).await;
@@ -63,7 +63,7 @@ pub(crate) async fn work_that_another_live_sweep_wants_goes_on<E: Engine>() {
     assert_eq!(states(&store, "b").await, [WorkState::Leased, WorkState::Cancelled]);
 }
 
-pub(crate) async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all<E: Engine>() {
+pub(crate) async fn work_resubmitted_before_its_worker_stopped_is_done<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
@@ -79,7 +79,7 @@ pub(crate) async fn work_that_is_wanted_again_before_its_worker_stopped_is_done_
     assert_eq!(sweep_record(&store, "b").await.counts.done, 1);
 }
 
-pub(crate) async fn cancelled_work_is_queued_again_when_it_is_asked_for_again<E: Engine>() {
+pub(crate) async fn cancelled_work_is_queued_by_a_new_request<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;
@@ -101,7 +101,7 @@ pub(crate) async fn cancelled_work_is_queued_again_when_it_is_asked_for_again<E:
     assert_eq!(record.counts, StateCounts { total: 2, running: 1, queued: 1, ..StateCounts::default() });
 }
 
-pub(crate) async fn what_another_sweep_has_computed_is_the_cancelled_ones_too<E: Engine>() {
+pub(crate) async fn a_cancelled_sweep_shares_results_of_another_one<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;

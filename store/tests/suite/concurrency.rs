@@ -116,7 +116,7 @@ pub(crate) async fn several_may_open_a_new_store_at_once<E: Engine>() {
     }
 }
 
-pub(crate) async fn of_several_submissions_with_one_idempotency_key_one_is_stored<E: Engine>() {
+pub(crate) async fn one_of_several_submissions_with_one_idempotency_key_is_stored<E: Engine>() {
     let engine = E::new();
     let start = Arc::new(Barrier::new(4));
     let outcomes: Vec<_> = (0..4)
@@ -160,7 +160,7 @@ pub(crate) async fn no_row_loses_its_blob_while_garbage_is_collected_over_and_ov
             .map(|writer| {
                 let name = format!("writer {writer} of {number}");
                 on_a_thread(config(Role::Worker), &start, async move |store| {
-                    write_beside_collectors(&store, &name).await;
+                    write_during_collection(&store, &name).await;
                 })
             })
             .collect();
@@ -224,7 +224,7 @@ fn contents(point: u32) -> [Vec<u8>; 2] {
 
 /// A worker. Some of its points it begins twice: at the first time it dies after it has stored a blob that nobody names, or it leaves a
 /// checkpoint.
-async fn write_beside_collectors(store: &Store, name: &str) {
+async fn write_during_collection(store: &Store, name: &str) {
     while let Some(Claim { lease, scenario, checkpoint }) = claim_or_none(store, name).await {
         let number = json(&scenario.changes_json)["number"].as_u64().unwrap() as u32;
         let point = number % 1_000;

@@ -37,7 +37,7 @@ pub(crate) async fn a_paused_sweep_is_not_handed_out_until_it_goes_on<E: Engine>
     assert!(!store.pause_sweep("t", true).await.unwrap());
 }
 
-pub(crate) async fn a_pause_does_not_hold_what_another_sweep_wants<E: Engine>() {
+pub(crate) async fn a_pause_does_not_hold_work_of_another_sweep<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2])).await;
@@ -55,7 +55,7 @@ pub(crate) async fn a_pause_does_not_hold_what_another_sweep_wants<E: Engine>() 
     assert_eq!(claim(&store, "w").await.lease.key, key(1));
 }
 
-pub(crate) async fn what_people_decide_about_a_sweep_can_be_changed<E: Engine>() {
+pub(crate) async fn editable_fields_of_a_sweep_are_changed<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
@@ -90,7 +90,7 @@ pub(crate) async fn what_people_decide_about_a_sweep_can_be_changed<E: Engine>()
     assert_eq!(store.change_sweep("t", &changes, None).await.unwrap(), ChangeOutcome::NoSuchSweep);
 }
 
-pub(crate) async fn a_change_is_refused_where_another_one_was_made_meanwhile<E: Engine>() {
+pub(crate) async fn a_change_of_a_stale_version_is_refused<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
@@ -153,7 +153,7 @@ pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {
     assert_eq!(none, AppendOutcome::NoSuchSweep);
 }
 
-pub(crate) async fn what_is_added_to_a_paused_sweep_waits_with_the_rest<E: Engine>() {
+pub(crate) async fn points_added_to_a_paused_sweep_wait<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     // Work that was cancelled before it could be held back.
@@ -180,7 +180,7 @@ async fn append_one(store: &Store, id: &str, number: u32, request: &str) {
     assert_eq!(added, AppendOutcome::Added(1));
 }
 
-pub(crate) async fn requests_are_kept_in_their_order_and_as_many_are_told_as_asked_for<E: Engine>() {
+pub(crate) async fn requests_are_kept_in_order_and_returned_up_to_a_limit<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [0])).await;
@@ -274,7 +274,7 @@ async fn finish_with(store: &Store, worker: &str, summary: &str, history: &[u8],
     assert!(store.finish_done(&claim.lease, &result).await.unwrap());
 }
 
-pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
+pub(crate) async fn a_disagreeing_refresh_is_reported<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     let provenance = async || point_record(&store, "s", 1).await.provenance_json.unwrap();
@@ -302,7 +302,7 @@ pub(crate) async fn a_refresh_that_disagrees_is_told<E: Engine>() {
     assert_eq!(point_record(&store, "s", 1).await.summary_json.as_deref(), Some(r#"{"radius":2}"#));
 }
 
-pub(crate) async fn a_table_that_a_refresh_lacks_is_told<E: Engine>() {
+pub(crate) async fn a_table_missing_from_a_refresh_is_reported<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -314,7 +314,7 @@ pub(crate) async fn a_table_that_a_refresh_lacks_is_told<E: Engine>() {
     assert_eq!(json(&point_record(&store, "s", 1).await.provenance_json.unwrap()), json(told));
 }
 
-pub(crate) async fn a_refresh_of_what_was_measured_may_disagree<E: Engine>() {
+pub(crate) async fn a_refresh_of_measured_times_may_disagree<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -325,7 +325,7 @@ pub(crate) async fn a_refresh_of_what_was_measured_may_disagree<E: Engine>() {
     assert_eq!(point_record(&store, "s", 1).await.provenance_json.as_deref(), Some(r#"{"worker":"second"}"#));
 }
 
-pub(crate) async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it<E: Engine>() {
+pub(crate) async fn a_refresh_follows_the_state_of_its_sweep<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
@@ -350,7 +350,7 @@ pub(crate) async fn a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it<E:
     assert_eq!(point.summary_json.as_deref(), Some(r#"{"by":"first"}"#));
 }
 
-pub(crate) async fn a_refresh_that_fails_leaves_the_old_result_and_says_why<E: Engine>() {
+pub(crate) async fn a_failed_refresh_keeps_the_old_result_and_reports_its_error<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("old", [1])).await;
@@ -395,7 +395,7 @@ pub(crate) async fn a_refresh_begins_at_the_beginning<E: Engine>() {
     assert_eq!(claim(&store, "second").await.checkpoint, None);
 }
 
-pub(crate) async fn only_what_is_known_is_taken_or_nothing_is_stored<E: Engine>() {
+pub(crate) async fn a_submission_of_known_points_alone_refuses_others<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("known", [1, 2, 3])).await;

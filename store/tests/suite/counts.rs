@@ -117,7 +117,7 @@ pub(crate) async fn counts_and_end_agree_with_the_points_after_every_step_of_a_r
     }
 }
 
-pub(crate) async fn events_tell_the_history_in_the_order_of_versions<E: Engine>() {
+pub(crate) async fn events_report_the_history_in_the_order_of_versions<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;

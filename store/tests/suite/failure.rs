@@ -31,7 +31,7 @@ fn places(places: &[(&str, i64)]) -> Vec<(String, i64)> {
     places.iter().map(|(sweep, ordinal)| ((*sweep).to_owned(), *ordinal)).collect()
 }
 
-pub(crate) async fn what_was_given_up_is_listed_over_all_sweeps_the_latest_first<E: Engine>() {
+pub(crate) async fn dead_work_is_listed_over_all_sweeps_latest_first<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1, 2, 3])).await;

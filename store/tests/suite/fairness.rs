@@ -68,7 +68,7 @@ pub(crate) async fn an_owner_cannot_jump_the_queue_with_many_small_sweeps<E: Eng
     assert_even(&served, 0..100, 1_000..1_100);
 }
 
-pub(crate) async fn who_goes_on_by_its_results_takes_turns_as_well<E: Engine>() {
+pub(crate) async fn workers_that_claim_with_results_take_turns_too<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit_of(&store, "anne", "large", 0..200).await;
@@ -106,7 +106,7 @@ pub(crate) async fn urgency_counts_within_an_owner_only<E: Engine>() {
     assert_eq!(among(&served, 0..100), 0, "the urgent ones first");
 }
 
-pub(crate) async fn retried_points_do_not_go_before_everybody_else<E: Engine>() {
+pub(crate) async fn retried_points_do_not_precede_other_owners<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit_of(&store, "anne", "cancelled", 0..100).await;

@@ -44,7 +44,7 @@ fn assert_unavailable<T: std::fmt::Debug>(result: drillsweep_store::Result<T>) {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn nothing_is_seen_of_an_upload_that_was_killed_with_its_server_and_another_one_is_whole() {
+async fn a_killed_upload_is_invisible_and_the_next_one_complete() {
     let mut server = Seaweed::start();
     let proxy = Proxy::before(&server.address());
     let (file, id) = large_file();
@@ -108,7 +108,7 @@ async fn a_server_that_is_gone_is_unavailable_and_back_when_it_is_started() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn what_an_overloaded_server_refuses_is_asked_again() {
+async fn requests_refused_by_an_overloaded_server_are_retried() {
     let server = Seaweed::shared();
     let proxy = Proxy::before(&server.address());
     let blobs = open(server, &proxy);
@@ -150,7 +150,7 @@ async fn a_server_that_says_nothing_is_not_waited_for_forever() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn what_was_written_is_known_though_the_answer_was_lost() {
+async fn a_write_with_a_lost_answer_is_known() {
     let server = Seaweed::shared();
     let proxy = Proxy::before(&server.address());
     let blobs = open(server, &proxy);

@@ -84,7 +84,7 @@ pub(crate) async fn blobs_that_are_reserved_together_all_stay_for_an_hour<E: Eng
     assert_eq!(found, Garbage { blobs: 2, blob_bytes: 1_500, ..Garbage::default() });
 }
 
-pub(crate) async fn what_a_killed_upload_left_goes_too_and_strange_files_stay<E: Engine>() {
+pub(crate) async fn leftovers_of_a_killed_upload_are_collected_and_foreign_files_kept<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     engine.abandon_upload(b"half");
@@ -127,7 +127,7 @@ pub(crate) async fn an_artifact_expires_with_the_youngest_sweep_that_has_it_unle
     assert_eq!(engine.bytes_of_objects(), before - 3 * 32);
 }
 
-pub(crate) async fn a_sweep_goes_at_its_time_and_leaves_what_others_have<E: Engine>() {
+pub(crate) async fn a_sweep_expires_and_leaves_shared_results<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("goes", [1, 2])).await;
@@ -215,7 +215,7 @@ pub(crate) async fn no_row_names_a_blob_that_is_gone<E: Engine>() {
     assert!(finish(&store, &claim).await);
 }
 
-pub(crate) async fn an_owner_who_was_forgotten_begins_like_one_who_was_idle<E: Engine>() {
+pub(crate) async fn a_forgotten_owner_starts_like_an_idle_one<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     let of = |owner: &str, id: &str, numbers: std::ops::Range<u32>| NewSweep {

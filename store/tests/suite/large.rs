@@ -27,7 +27,7 @@ async fn queued(store: &Store) -> i64 {
     store.queue_depths().await.unwrap().queued
 }
 
-pub(crate) async fn half_a_sweep_is_seen_by_nobody_and_taken_away<E: Engine>() {
+pub(crate) async fn a_partial_sweep_is_invisible_and_removed<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     // Another process; this one dies.
@@ -46,10 +46,10 @@ pub(crate) async fn half_a_sweep_is_seen_by_nobody_and_taken_away<E: Engine>() {
     assert_eq!(store.sweep_version("s").await.unwrap(), None);
     let again = store.submit_sweep(&NewSweep { id: "t".to_owned(), ..request.clone() }).await;
     assert!(matches!(again, Err(StoreError::Arriving)), "{again:?}");
-    assert_eq!(store.finish_what_was_begun(SILENCE_MS).await.unwrap(), 0);
+    assert_eq!(store.finish_partial_changes(SILENCE_MS).await.unwrap(), 0);
 
     let later = engine.after(SILENCE_MS + 1_000).await;
-    assert_eq!(later.finish_what_was_begun(SILENCE_MS).await.unwrap(), 1);
+    assert_eq!(later.finish_partial_changes(SILENCE_MS).await.unwrap(), 1);
     assert_eq!(queued(&later).await, 0);
     let again = later.submit_sweep(&NewSweep { id: "t".to_owned(), ..request }).await.unwrap();
     assert_eq!(again, SubmitOutcome::Created);
@@ -105,7 +105,7 @@ pub(crate) async fn a_cancellation_holds_from_its_beginning_and_is_brought_to_it
     let record = sweep_record(&store, "s").await;
     assert!(record.is_cancelled && record.finished.is_some());
     assert_eq!(record.counts, expected);
-    assert_eq!(store.finish_what_was_begun(SILENCE_MS).await.unwrap(), 1);
+    assert_eq!(store.finish_partial_changes(SILENCE_MS).await.unwrap(), 1);
     assert_eq!(queued(&store).await, 0);
     assert_eq!(sweep_record(&store, "s").await.counts, expected);
     // One who takes it back half-way has all of it queued.
@@ -119,7 +119,7 @@ pub(crate) async fn a_cancellation_holds_from_its_beginning_and_is_brought_to_it
     }
     assert!(store.retry_sweep("s").await.unwrap().is_some_and(|queued| queued < POINTS.into()));
     assert_eq!(queued(&store).await, all);
-    assert_eq!(store.finish_what_was_begun(SILENCE_MS).await.unwrap(), 0);
+    assert_eq!(store.finish_partial_changes(SILENCE_MS).await.unwrap(), 0);
     let expected = StateCounts { total: all, queued: all, ..StateCounts::default() };
     assert_eq!(sweep_record(&store, "s").await.counts, expected);
 }

@@ -63,7 +63,7 @@ pub(crate) async fn open_work_of_an_owner_ends_with_its_points<E: Engine>() {
     assert_eq!(store.open_work("anne").await.unwrap(), 2);
 }
 
-pub(crate) async fn a_buried_workers_points_are_free_at_once_and_nobody_elses<E: Engine>() {
+pub(crate) async fn a_buried_worker_releases_its_points_alone_at_once<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     for (id, process) in [("dead", 7), ("alive", 8)] {
@@ -123,7 +123,7 @@ pub(crate) async fn a_late_writer_changes_nothing<E: Engine>() {
     assert!(!finish(&later, &prompt).await);
 }
 
-pub(crate) async fn who_reserves_the_blobs_of_a_result_keeps_its_lease<E: Engine>() {
+pub(crate) async fn a_reservation_of_blobs_extends_the_lease<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -206,7 +206,7 @@ pub(crate) async fn a_result_that_is_refused_brings_no_point<E: Engine>() {
 }
 
 /// A fleet that goes on from result to result never calls for a point alone: it looks for leases that ran out all the same.
-pub(crate) async fn a_result_brings_its_worker_what_a_silent_one_left<E: Engine>() {
+pub(crate) async fn a_result_claims_points_of_an_expired_lease<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1, 2])).await;
@@ -274,7 +274,7 @@ pub(crate) async fn a_point_whose_workers_die_three_times_is_dead<E: Engine>() {
     assert!(finish(&after_one_more, &claim(&after_one_more, "w").await).await);
 }
 
-pub(crate) async fn what_is_known_of_the_last_worker_is_told<E: Engine>() {
+pub(crate) async fn the_error_of_a_dead_point_names_its_last_worker<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -324,9 +324,7 @@ pub(crate) async fn a_point_given_back_is_refunded_its_attempt_but_not_its_fenci
     assert!(finish(&store, &again).await);
 }
 
-pub(crate) async fn an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_again_and_is_given_up_at_the_fifth<
-    E: Engine,
->() {
+pub(crate) async fn infrastructure_failures_back_off_exponentially_with_jitter_up_to_the_fifth<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -398,7 +396,7 @@ pub(crate) async fn a_checkpoint_reaches_the_next_attempts_until_the_work_is_don
     assert!(finish(&later, &fourth).await);
 }
 
-pub(crate) async fn work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_not<E: Engine>() {
+pub(crate) async fn poison_work_is_given_up_even_if_workers_survive<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -426,7 +424,7 @@ pub(crate) async fn a_worker_gets_only_work_of_its_own_numbers<E: Engine>() {
     assert_eq!(claimed.lease.key, key(1));
 }
 
-pub(crate) async fn work_of_numbers_that_nobody_computes_any_more_ends_and_says_so<E: Engine>() {
+pub(crate) async fn work_of_an_abandoned_version_ends_with_its_reason<E: Engine>() {
     const SILENCE_MS: i64 = 100_000;
     let engine = E::new();
     let store = engine.open().await;
@@ -466,7 +464,7 @@ pub(crate) async fn the_urgent_goes_first_then_the_order_asked<E: Engine>() {
     assert_eq!(order, [key(2), key(4), key(1), key(3)]);
 }
 
-pub(crate) async fn workers_are_listed_while_they_are_heard_of<E: Engine>() {
+pub(crate) async fn workers_are_listed_while_their_heartbeat_lasts<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     store.register_worker(&worker("a")).await.unwrap();

@@ -12,11 +12,11 @@ macro_rules! conformance {
         conformance! { $engine:
             cancel {
                 queued_points_end_at_once_and_running_ones_at_their_next_renewal,
-                work_that_another_live_sweep_wants_goes_on,
-                work_that_is_wanted_again_before_its_worker_stopped_is_done_after_all,
-                what_another_sweep_has_computed_is_the_cancelled_ones_too,
+                work_of_another_live_sweep_continues,
+                work_resubmitted_before_its_worker_stopped_is_done,
+                a_cancelled_sweep_shares_results_of_another_one,
                 a_sweep_whose_points_all_go_on_for_another_one_is_finished,
-                cancelled_work_is_queued_again_when_it_is_asked_for_again,
+                cancelled_work_is_queued_by_a_new_request,
                 a_retry_takes_back_the_cancellation_of_running_work,
                 unwanted_work_that_comes_back_is_not_queued,
                 a_result_that_comes_in_spite_of_a_cancellation_is_kept,
@@ -28,34 +28,34 @@ macro_rules! conformance {
                 four_workers_share_a_thousand_points_without_losing_or_doubling_one,
                 writers_of_every_kind_wait_for_each_other_and_never_find_the_database_locked,
                 several_may_open_a_new_store_at_once,
-                of_several_submissions_with_one_idempotency_key_one_is_stored,
+                one_of_several_submissions_with_one_idempotency_key_is_stored,
                 no_row_loses_its_blob_while_garbage_is_collected_over_and_over,
             }
             control {
                 a_paused_sweep_is_not_handed_out_until_it_goes_on,
-                a_pause_does_not_hold_what_another_sweep_wants,
-                what_people_decide_about_a_sweep_can_be_changed,
-                a_change_is_refused_where_another_one_was_made_meanwhile,
+                a_pause_does_not_hold_work_of_another_sweep,
+                editable_fields_of_a_sweep_are_changed,
+                a_change_of_a_stale_version_is_refused,
                 points_are_added_once_and_go_on_from_the_last,
-                requests_are_kept_in_their_order_and_as_many_are_told_as_asked_for,
-                what_is_added_to_a_paused_sweep_waits_with_the_rest,
+                requests_are_kept_in_order_and_returned_up_to_a_limit,
+                points_added_to_a_paused_sweep_wait,
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
-                a_refresh_that_disagrees_is_told,
+                a_disagreeing_refresh_is_reported,
                 a_refresh_by_another_owner_leaves_finished_sweeps_as_they_are,
-                a_table_that_a_refresh_lacks_is_told,
-                a_refresh_of_what_was_measured_may_disagree,
-                a_refresh_goes_by_what_becomes_of_the_sweep_that_wants_it,
-                a_refresh_that_fails_leaves_the_old_result_and_says_why,
+                a_table_missing_from_a_refresh_is_reported,
+                a_refresh_of_measured_times_may_disagree,
+                a_refresh_follows_the_state_of_its_sweep,
+                a_failed_refresh_keeps_the_old_result_and_reports_its_error,
                 a_refresh_begins_at_the_beginning,
-                only_what_is_known_is_taken_or_nothing_is_stored,
+                a_submission_of_known_points_alone_refuses_others,
                 sweeps_are_found_by_their_tags_and_states,
             }
             counts {
                 counts_and_end_agree_with_the_points_after_every_step_of_a_random_history,
-                events_tell_the_history_in_the_order_of_versions,
+                events_report_the_history_in_the_order_of_versions,
             }
             failure {
-                what_was_given_up_is_listed_over_all_sweeps_the_latest_first,
+                dead_work_is_listed_over_all_sweeps_latest_first,
                 an_error_that_is_no_json_has_no_class,
             }
             fairness {
@@ -63,12 +63,12 @@ macro_rules! conformance {
                 ten_points_do_not_wait_for_the_ten_thousand_that_they_are_among,
                 an_owner_cannot_jump_the_queue_with_many_small_sweeps,
                 idle_time_is_not_saved_up,
-                who_goes_on_by_its_results_takes_turns_as_well,
+                workers_that_claim_with_results_take_turns_too,
                 urgency_counts_within_an_owner_only,
-                retried_points_do_not_go_before_everybody_else,
+                retried_points_do_not_precede_other_owners,
             }
             large {
-                half_a_sweep_is_seen_by_nobody_and_taken_away,
+                a_partial_sweep_is_invisible_and_removed,
                 a_large_submission_lets_others_in_between,
                 a_cancellation_holds_from_its_beginning_and_is_brought_to_its_end,
             }
@@ -76,25 +76,25 @@ macro_rules! conformance {
                 a_silent_worker_loses_its_point_when_the_lease_ends_and_not_before,
                 a_claim_finds_a_lease_that_ended_after_the_last_look,
                 open_work_of_an_owner_ends_with_its_points,
-                a_buried_workers_points_are_free_at_once_and_nobody_elses,
+                a_buried_worker_releases_its_points_alone_at_once,
                 a_late_writer_changes_nothing,
-                who_reserves_the_blobs_of_a_result_keeps_its_lease,
+                a_reservation_of_blobs_extends_the_lease,
                 a_result_brings_its_worker_the_next_point,
                 a_result_that_is_refused_brings_no_point,
-                a_result_brings_its_worker_what_a_silent_one_left,
+                a_result_claims_points_of_an_expired_lease,
                 the_same_worker_cannot_write_under_its_earlier_claim,
                 a_renewal_extends_the_lease_and_carries_the_progress,
                 a_point_whose_workers_die_three_times_is_dead,
-                what_is_known_of_the_last_worker_is_told,
+                the_error_of_a_dead_point_names_its_last_worker,
                 a_point_given_back_is_refunded_its_attempt_but_not_its_fencing_token,
-                an_infrastructure_failure_waits_5_10_20_40_seconds_or_half_as_long_again_and_is_given_up_at_the_fifth,
+                infrastructure_failures_back_off_exponentially_with_jitter_up_to_the_fifth,
                 points_that_failed_together_do_not_come_back_together,
                 a_checkpoint_reaches_the_next_attempts_until_the_work_is_done,
-                work_that_brings_workers_down_is_given_up_whether_they_survive_it_or_not,
+                poison_work_is_given_up_even_if_workers_survive,
                 a_worker_gets_only_work_of_its_own_numbers,
-                work_of_numbers_that_nobody_computes_any_more_ends_and_says_so,
+                work_of_an_abandoned_version_ends_with_its_reason,
                 the_urgent_goes_first_then_the_order_asked,
-                workers_are_listed_while_they_are_heard_of,
+                workers_are_listed_while_their_heartbeat_lasts,
                 a_clock_that_is_set_back_keeps_no_point_with_a_dead_worker,
                 a_clock_that_is_set_back_holds_up_no_retry,
                 a_clock_that_is_set_back_makes_no_dead_worker_alive,
@@ -105,22 +105,22 @@ macro_rules! conformance {
             }
             repair {
                 a_lost_table_is_computed_again_and_is_whole_then,
-                what_fails_to_be_computed_again_is_not_tried_at_every_look,
-                a_repair_goes_on_whatever_becomes_of_other_sweeps,
+                a_failed_repair_is_not_repeated_at_every_read,
+                a_repair_does_not_depend_on_other_sweeps,
                 a_repair_waits_while_its_sweep_is_paused,
-                what_nobody_computes_any_more_is_not_queued,
+                a_repair_of_an_abandoned_version_is_not_queued,
                 a_check_repairs_all_that_it_finds,
             }
             garbage {
                 a_blob_that_no_row_names_goes_after_its_grace,
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
                 blobs_that_are_reserved_together_all_stay_for_an_hour,
-                what_a_killed_upload_left_goes_too_and_strange_files_stay,
+                leftovers_of_a_killed_upload_are_collected_and_foreign_files_kept,
                 an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
-                a_sweep_goes_at_its_time_and_leaves_what_others_have,
+                a_sweep_expires_and_leaves_shared_results,
                 a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinished,
                 no_row_names_a_blob_that_is_gone,
-                an_owner_who_was_forgotten_begins_like_one_who_was_idle,
+                a_forgotten_owner_starts_like_an_idle_one,
             }
             submit {
                 a_sweep_is_read_back_as_it_was_submitted,
@@ -128,7 +128,7 @@ macro_rules! conformance {
                 the_same_point_is_computed_once_for_every_sweep_that_has_it,
                 a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_once,
                 a_point_whose_result_is_part_of_a_fuller_one_is_not_computed,
-                a_physical_failure_is_final_until_a_retry_is_asked_for,
+                a_physical_failure_is_final_until_a_retry,
                 the_same_idempotency_key_gives_the_sweep_that_it_made,
                 pages_hold_every_row_once_and_in_order,
                 everything_is_there_after_reopening,
@@ -141,12 +141,12 @@ macro_rules! conformance {
             }
             verification {
                 runs_come_after_the_points_and_end_the_sweep,
-                a_run_is_shared_with_whoever_asks_for_that_very_point,
+                a_run_is_shared_with_sweeps_of_the_same_point,
                 runs_are_cancelled_held_hurried_and_retried_with_their_sweep,
-                a_run_that_another_live_sweep_wants_goes_on,
+                a_run_of_another_live_sweep_continues,
                 a_run_is_kept_as_long_as_its_sweep,
                 added_points_bring_their_runs,
-                where_nothing_is_computed_runs_must_be_known_too,
+                a_submission_of_known_points_requires_known_runs,
             }
         }
     };
@@ -174,7 +174,7 @@ macro_rules! with_objects {
             }
             control {
                 a_refresh_computes_anew_and_keeps_the_old_result_until_then,
-                a_refresh_that_disagrees_is_told,
+                a_disagreeing_refresh_is_reported,
                 a_refresh_by_another_owner_leaves_finished_sweeps_as_they_are,
             }
             lease {
@@ -186,10 +186,10 @@ macro_rules! with_objects {
             }
             repair {
                 a_lost_table_is_computed_again_and_is_whole_then,
-                what_fails_to_be_computed_again_is_not_tried_at_every_look,
-                a_repair_goes_on_whatever_becomes_of_other_sweeps,
+                a_failed_repair_is_not_repeated_at_every_read,
+                a_repair_does_not_depend_on_other_sweeps,
                 a_repair_waits_while_its_sweep_is_paused,
-                what_nobody_computes_any_more_is_not_queued,
+                a_repair_of_an_abandoned_version_is_not_queued,
                 a_check_repairs_all_that_it_finds,
             }
             garbage {
@@ -197,7 +197,7 @@ macro_rules! with_objects {
                 a_blob_that_was_written_for_a_row_to_come_stays_for_an_hour,
                 blobs_that_are_reserved_together_all_stay_for_an_hour,
                 an_artifact_expires_with_the_youngest_sweep_that_has_it_unless_one_is_pinned,
-                a_sweep_goes_at_its_time_and_leaves_what_others_have,
+                a_sweep_expires_and_leaves_shared_results,
                 a_sweep_is_deleted_on_request_unless_it_is_pinned_or_unfinished,
                 no_row_names_a_blob_that_is_gone,
             }

@@ -134,7 +134,7 @@ async fn a_database_with_another_schema_is_refused() {
 }
 
 #[tokio::test]
-async fn who_waits_hears_of_work_and_of_changes_that_another_process_makes() {
+async fn waiting_processes_are_notified_of_work_and_changes_of_others() {
     let engine = <Postgres>::new();
     let (waiting, other) = (engine.open().await, engine.open().await);
     let (mut work, mut sweeps) = (waiting.work_changes().await, waiting.sweep_changes().await);
@@ -207,7 +207,7 @@ async fn a_worker_of_its_own_role_does_its_work_and_nothing_else() {
 }
 
 #[tokio::test]
-async fn what_a_failover_has_forgotten_is_done_again_and_nothing_twice() {
+async fn changes_lost_by_a_failover_are_repeated_once() {
     let mut engine = <Postgres>::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", 0..4)).await;
@@ -266,7 +266,7 @@ async fn pending(database: &PgPool) -> i64 {
 }
 
 #[tokio::test]
-async fn what_follows_from_a_change_is_done_by_whoever_comes_next_where_its_process_died() {
+async fn the_next_process_completes_the_changes_of_a_dead_one() {
     let engine = <Postgres>::new();
     let store = engine.open().await;
     let database = engine.database().await;
@@ -359,7 +359,7 @@ async fn a_call_that_is_dropped_leaves_nothing_to_the_next_one() {
 }
 
 #[tokio::test]
-async fn what_was_pending_when_a_dump_was_made_is_applied_once_it_is_restored() {
+async fn pending_changes_of_a_dump_are_applied_after_restoring() {
     let engine = <Postgres>::new();
     let store = engine.open().await;
     let database = engine.database().await;
@@ -378,7 +378,7 @@ async fn what_was_pending_when_a_dump_was_made_is_applied_once_it_is_restored() 
 }
 
 #[tokio::test]
-async fn many_workers_leave_nothing_pending_and_tell_every_change_once_and_in_order() {
+async fn many_workers_leave_nothing_pending_and_report_every_change_once_in_order() {
     const POINTS: u32 = 400;
     let engine = <Postgres>::new();
     let store = engine.open().await;
@@ -438,7 +438,7 @@ async fn many_workers_leave_nothing_pending_and_tell_every_change_once_and_in_or
 }
 
 #[tokio::test]
-async fn of_many_processes_one_looks_for_leases_that_have_run_out() {
+async fn one_of_many_processes_expires_leases() {
     let engine = <Postgres>::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", 0..8)).await;
@@ -472,7 +472,7 @@ async fn of_many_processes_one_looks_for_leases_that_have_run_out() {
 }
 
 #[tokio::test]
-async fn what_a_row_names_is_there_and_stays() {
+async fn blobs_named_by_rows_exist_and_stay() {
     let engine = <Postgres>::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", 0..3)).await;
@@ -592,7 +592,7 @@ fn tables(rows: Vec<(String, String, String, bool)>) -> BTreeMap<String, Columns
 conformance!(Postgres);
 
 #[tokio::test]
-async fn a_server_that_can_make_no_process_for_a_connection_is_asked_again() {
+async fn a_server_without_a_process_for_a_connection_is_retried() {
     /// Message that such a server writes without having read anything (`report_fork_failure_to_client` in its source).
     const NO_PROCESS: &[u8] =
         b"Ecould not fork new process for connection: Resource temporarily unavailable\n\0";

@@ -47,7 +47,7 @@ pub(crate) async fn a_lost_table_is_computed_again_and_is_whole_then<E: Engine>(
     assert_eq!(store.queue_damaged(&key(1), blob, PHYSICS).await.unwrap(), Repair::Queued);
 }
 
-pub(crate) async fn what_fails_to_be_computed_again_is_not_tried_at_every_look<E: Engine>() {
+pub(crate) async fn a_failed_repair_is_not_repeated_at_every_read<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;
@@ -63,7 +63,7 @@ pub(crate) async fn what_fails_to_be_computed_again_is_not_tried_at_every_look<E
     assert_eq!(store.blobs().get(blob).await.unwrap(), key(1).as_slice());
 }
 
-pub(crate) async fn a_repair_goes_on_whatever_becomes_of_other_sweeps<E: Engine>() {
+pub(crate) async fn a_repair_does_not_depend_on_other_sweeps<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;
@@ -91,7 +91,7 @@ pub(crate) async fn a_repair_waits_while_its_sweep_is_paused<E: Engine>() {
     assert!(finish(&store, &claim(&store, "w").await).await);
 }
 
-pub(crate) async fn what_nobody_computes_any_more_is_not_queued<E: Engine>() {
+pub(crate) async fn a_repair_of_an_abandoned_version_is_not_queued<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("s", [1])).await;

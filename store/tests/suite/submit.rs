@@ -140,7 +140,7 @@ pub(crate) async fn a_point_that_a_sweep_has_twice_counts_twice_and_is_computed_
     assert!(sweep_record(&store, "s").await.finished.is_some());
 }
 
-pub(crate) async fn a_physical_failure_is_final_until_a_retry_is_asked_for<E: Engine>() {
+pub(crate) async fn a_physical_failure_is_final_until_a_retry<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("a", [1])).await;

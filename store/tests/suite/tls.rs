@@ -76,7 +76,7 @@ async fn any_other_certificate_is_refused_with_the_reason() {
 }
 
 #[tokio::test]
-async fn a_server_that_wants_tls_is_not_reached_without_and_one_without_is_not_taken_for_one_that_has_it() {
+async fn required_tls_refuses_plain_clients_and_plain_servers() {
     let authority = Authority::new();
     let server = start(&authority.certify(&["127.0.0.1"]));
     let error = open(&server, "sslmode=disable", None).await.unwrap_err();

@@ -101,7 +101,7 @@ async fn a_store_goes_from_file_to_file_and_from_server_to_server() {
 }
 
 #[tokio::test]
-async fn what_follows_from_a_change_arrives_though_its_process_died_before() {
+async fn consequences_of_a_change_are_carried_after_its_process_died() {
     let (remote, local) = (Remote::new(), Local::new());
     let store = remote.open().await;
     submit(&store, &sweep("s", 0..3)).await;
@@ -115,7 +115,7 @@ async fn what_follows_from_a_change_arrives_though_its_process_died_before() {
 }
 
 #[tokio::test]
-async fn what_is_leased_arrives_as_given_back_under_its_fencing_token() {
+async fn leased_work_is_carried_as_released_with_its_fencing_token() {
     let (local, remote) = (Local::new(), Remote::new());
     let store = local.open().await;
     submit(&store, &sweep("kept", [1])).await;

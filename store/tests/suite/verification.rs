@@ -52,7 +52,7 @@ pub(crate) async fn runs_come_after_the_points_and_end_the_sweep<E: Engine>() {
     assert_eq!(of_runs, [[3], [3], [1], [1]]);
 }
 
-pub(crate) async fn a_run_is_shared_with_whoever_asks_for_that_very_point<E: Engine>() {
+pub(crate) async fn a_run_is_shared_with_sweeps_of_the_same_point<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &verified(sweep("s", [1, 2]), &[(1, 11), (2, 11)])).await;
@@ -121,7 +121,7 @@ pub(crate) async fn runs_are_cancelled_held_hurried_and_retried_with_their_sweep
     assert_eq!(of_both, [31, 32, 41].map(key));
 }
 
-pub(crate) async fn a_run_that_another_live_sweep_wants_goes_on<E: Engine>() {
+pub(crate) async fn a_run_of_another_live_sweep_continues<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &verified(sweep("s", [1]), &[(1, 11)])).await;
@@ -169,7 +169,7 @@ pub(crate) async fn added_points_bring_their_runs<E: Engine>() {
     assert_eq!(sweep_record(&store, "s").await.verification.total, 2);
 }
 
-pub(crate) async fn where_nothing_is_computed_runs_must_be_known_too<E: Engine>() {
+pub(crate) async fn a_submission_of_known_points_requires_known_runs<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
     submit(&store, &sweep("known", [1, 2, 11])).await;

@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn one_member_has_no_interval_and_members_alike_have_none_to_speak_of() {
+    fn one_member_has_no_interval_and_equal_members_a_tiny_one() {
         assert_eq!(
             contrast(&[(1.0, &[3.0]), (-1.0, &[1.0, 2.0])]),
             Contrast { value: 1.5, half_width: None }

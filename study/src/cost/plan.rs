@@ -25,7 +25,7 @@ const ESDIRK4_STEP: f64 = 1.25e-4;
 const SETTLED_STEPS: [f64; 2] = [6.25e-5, 1e-3];
 
 /// Largest number of contact iterations of the reference's implicit methods.
-const REFERENCE_SWEEPS: u32 = 30;
+const REFERENCE_CONTACT_ITERATIONS: u32 = 30;
 
 /// Factor on the scenario's element lengths in the reference of runs that settle: finer than the 0.4 of the accuracy `reference`.
 const REFERENCE_MESH: f64 = 0.25;
@@ -110,7 +110,7 @@ pub fn plan(scenario: &Scenario) -> Result<Vec<PlannedRow>, StudyError> {
         Some(methods) => methods.clone(),
         None => {
             let converged = |integrator, step| TimeStepping {
-                contact_sweeps: REFERENCE_SWEEPS,
+                contact_sweeps: REFERENCE_CONTACT_ITERATIONS,
                 ..TimeStepping::fixed(integrator, part_of(interval, step))
             };
             let [alpha, esdirk4] = SETTLED_STEPS;
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_study_looks_at_what_is_read() {
+    fn a_study_covers_the_windows_of_its_scenario() {
         let own = preset("paper-200m").unwrap();
         let rows = planned(|_| {});
         for row in &rows {
@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn members_and_methods_are_those_asked_for() {
+    fn members_and_methods_are_those_requested() {
         let adaptive =
             MethodSteps { tolerance: Some(1e-3), ..MethodSteps::fixed(Integrator::Rk4, vec![1e-4]) };
         let rows = planned(|s| {

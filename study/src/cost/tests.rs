@@ -90,13 +90,13 @@ fn report_with(rows: Vec<Row>, change: impl Fn(&mut Scenario)) -> CostReport {
 }
 
 fn references(a: Measure, b: Measure) -> Vec<Row> {
-    let sweeps = |contact_sweeps, stepping| TimeStepping { contact_sweeps, ..stepping };
+    let iterations = |contact_sweeps, stepping| TimeStepping { contact_sweeps, ..stepping };
     vec![
         (Role::Reference, "A", TimeStepping::fixed(Integrator::Rk4, 5e-5), vec![(a, 60.0)]),
         (
             Role::Reference,
             "B",
-            sweeps(30, TimeStepping::fixed(Integrator::Esdirk4, 1.25e-4)),
+            iterations(30, TimeStepping::fixed(Integrator::Esdirk4, 1.25e-4)),
             vec![(b, 90.0)],
         ),
     ]
@@ -255,7 +255,7 @@ fn named_lines_are_found_shifted_or_missing() {
 }
 
 #[test]
-fn members_tell_bias_from_spread() {
+fn members_separate_bias_from_spread() {
     let members = |sizes: [f64; 5], time: f64| sizes.map(|size| (sized(size), time)).to_vec();
     let around = |mean: f64| [-0.02, -0.01, 0.0, 0.01, 0.02].map(|offset| mean + offset);
     let mut rows = references(sized(1.0), sized(1.0));
@@ -283,7 +283,7 @@ fn members_tell_bias_from_spread() {
 }
 
 #[test]
-fn the_cheapest_line_within_the_wanted_error_is_recommended() {
+fn the_cheapest_line_within_the_requested_error_is_recommended() {
     let mut rows = references(sized(1.0), sized(1.0));
     rows.extend([
         method(Integrator::GeneralizedAlpha, 5e-4, sized(1.0), 1.0),
@@ -318,7 +318,7 @@ fn no_accuracy_is_recommended_that_the_reference_has_not() {
 }
 
 #[test]
-fn histories_part_where_the_methods_of_the_reference_do() {
+fn histories_diverge_with_the_methods_of_the_reference() {
     let mut late = sized(1.0);
     for value in &mut late.histories[0].u[4000..] {
         *value += 2e-3;

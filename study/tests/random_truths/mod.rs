@@ -123,7 +123,7 @@ pub fn judge(scenario: &Scenario, most_steps: f64) -> Judgement {
         return Judgement::Passed("rk4 takes too long");
     }
     let Some((own, records)) = run(&model, &equilibrium) else { return Judgement::Failed };
-    if !records.contacts.iter().any(|node| node.capture_count > 0) {
+    if !records.contacts.iter().any(|node| node.slip_to_stick_count > 0) {
         return Judgement::Passed("nothing sticks");
     }
     let control = Control::new();

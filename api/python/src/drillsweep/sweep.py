@@ -120,7 +120,7 @@ class Sweep:
 
     @property
     def is_pinned(self) -> bool:
-        """Whether it, and all that belongs to it, is kept whatever its age."""
+        """True if the sweep and its data are kept regardless of age."""
         return bool(self._data["pinned"])
 
     @property
@@ -332,7 +332,7 @@ class Sweep:
             name: A name for people; None takes it away.
             tags: Words to find it by, in place of those that it has.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
-            is_pinned: Whether it, and all that belongs to it, is kept whatever its age.
+            is_pinned: True if the sweep and its data are kept regardless of age.
             expires: When it is to be deleted, once all its points are final and unless it is pinned: a time, a span
                 from now, or None for never. A time without a zone is this machine's.
             if_unchanged: Raise `PreconditionFailed`, and change nothing, if the sweep has changed since this object

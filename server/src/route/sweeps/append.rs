@@ -94,7 +94,7 @@ pub(crate) async fn append(
         AppendOutcome::OtherNumbers(version) => {
             let detail = format!(
                 "the points of sweep {id} are of physics version {version}, and this service computes version \
-                 {PHYSICS_VERSION}: points of both in one sweep would not compare; submit a new one"
+                 {PHYSICS_VERSION}: points of both in one sweep would not be comparable; submit a new one"
             );
             return Err(Error::new(ProblemKind::Conflict, detail));
         }

@@ -76,7 +76,7 @@ pub(crate) enum Cache {
     responses(
         (status = 201, description = "The sweep is stored and queued", body = Sweep,
             headers(("Location" = String, description = "The sweep"))),
-        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        (status = 200, description = "With `dry_run`: the plan of the request", body = DryRun),
         Problems,
     )
 )]
@@ -106,7 +106,7 @@ pub(crate) async fn create(
     responses(
         (status = 201, description = "The run is stored and queued", body = Sweep,
             headers(("Location" = String, description = "The sweep of one point"))),
-        (status = 200, description = "With `dry_run`: what the request would become", body = DryRun),
+        (status = 200, description = "With `dry_run`: the plan of the request", body = DryRun),
         Problems,
     )
 )]

@@ -63,7 +63,7 @@ pub struct SegmentCompliance<L> {
 
 /// A part of an element, from 0 at the upper end to 1 at the lower one; empty if both ends are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stretch<L> {
+pub(super) struct Interval<L> {
     pub(super) from: L,
     pub(super) to: L,
 }
@@ -80,9 +80,9 @@ pub(super) struct Gap<L> {
 /// The parts of an element in the wall, with the gap along it.
 struct Contact<L> {
     gap: Gap<L>,
-    first: Stretch<L>,
+    first: Interval<L>,
     /// The other part if a gap opens between two outer ones; empty in most cases.
-    second: Stretch<L>,
+    second: Interval<L>,
 }
 
 /// The penetration along an element, represented by two points.
@@ -290,10 +290,10 @@ impl<L: Lane> ContactSegment<L> {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         // A collar on its low side touches with the whole of most elements: there no roots are needed.
         if !(may_touch & !whole).any() {
-            let first = Stretch { from: zero, to: L::select(whole, one, zero) };
-            return Some(Contact { gap, first, second: Stretch { from: one, to: one } });
+            let first = Interval { from: zero, to: L::select(whole, one, zero) };
+            return Some(Contact { gap, first, second: Interval { from: one, to: one } });
         }
-        let (mut first, mut second) = gap.stretches();
+        let (mut first, mut second) = gap.intervals();
         first.from = L::select(whole, zero, first.from);
         first.to = L::select(whole, one, first.to);
         second.from = L::select(whole, one, second.from);
@@ -419,11 +419,11 @@ impl<L: Lane> Gap<L> {
 
     /// Integrals of the gap over a part of the element, with the powers 0 to 3 of the distance from its upper end as weights, and of its square.
     #[inline(always)]
-    fn moments(&self, stretch: &Stretch<L>) -> ([L; 4], L) {
-        let length = stretch.length();
+    fn moments(&self, interval: &Interval<L>) -> ([L; 4], L) {
+        let length = interval.length();
         // p + q t + r t^2, t from 0 to 1 along the part.
-        let p = self.at(stretch.from);
-        let q = (self.bend + self.bend).mul_add(stretch.from, self.rise) * length;
+        let p = self.at(interval.from);
+        let q = (self.bend + self.bend).mul_add(interval.from, self.rise) * length;
         let r = self.bend * length * length;
         let over = |k: f64| {
             r.mul_add(
@@ -440,7 +440,7 @@ impl<L: Lane> Gap<L> {
     /// The parts of the element with a positive gap: one, or the two outer ones if it closes at both ends only; the second part of a single one is
     /// empty.
     #[inline(always)]
-    fn stretches(&self) -> (Stretch<L>, Stretch<L>) {
+    fn intervals(&self) -> (Interval<L>, Interval<L>) {
         let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
         let Gap { upper, lower, rise: b, bend: c } = *self;
         let discriminant = b * b - L::splat(4.0) * c * upper;
@@ -465,16 +465,16 @@ impl<L: Lane> Gap<L> {
         let between = !from_top & !to_bottom & crosses & has_maximum;
         let touches = from_top | to_bottom | between;
         let ends_inside = dips | !to_bottom;
-        let first = Stretch {
+        let first = Interval {
             from: L::select(touches & !from_top, clamped(up), zero),
             to: L::select(touches, L::select(ends_inside, clamped(down), one), zero),
         };
-        let second = Stretch { from: L::select(dips, clamped(up), one), to: one };
+        let second = Interval { from: L::select(dips, clamped(up), one), to: one };
         (first, second)
     }
 }
 
-impl<L: Lane> Stretch<L> {
+impl<L: Lane> Interval<L> {
     /// Length relative to that of the element.
     #[inline(always)]
     fn length(&self) -> L {
@@ -514,13 +514,13 @@ impl ContactSegment<f64> {
         &self,
         planes: &[Plane<f64>; 2],
     ) -> impl Iterator<Item = (Place<f64>, f64)> + use<> {
-        let none = Stretch { from: 0.0, to: 0.0 };
-        let stretches = self.contact(planes).map_or([none; 2], |contact| [contact.first, contact.second]);
+        let none = Interval { from: 0.0, to: 0.0 };
+        let intervals = self.contact(planes).map_or([none; 2], |contact| [contact.first, contact.second]);
         let segment = *self;
-        stretches.into_iter().filter(|stretch| stretch.from < stretch.to).flat_map(move |stretch| {
-            let length = stretch.length();
+        intervals.into_iter().filter(|interval| interval.from < interval.to).flat_map(move |interval| {
+            let length = interval.length();
             THREE_POINTS
-                .map(|(at, weight)| (segment.place(length.mul_add(at, stretch.from)), weight * length))
+                .map(|(at, weight)| (segment.place(length.mul_add(at, interval.from)), weight * length))
         })
     }
 

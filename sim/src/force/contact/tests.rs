@@ -179,7 +179,7 @@ fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
 
 /// The curve (14) peaks at 2 v_ref mu_d / (xi (1 - xi)), 0.054 m/s in the base case.
 #[test]
-fn friction_of_the_base_case_peaks_where_published() {
+fn friction_of_the_base_case_peaks_at_the_published_speed() {
     let law = parameters(&BASE);
     let peak = (1..2000)
         .map(|i| f64::from(i) * 1e-4)
@@ -261,7 +261,7 @@ fn friction_of_the_sliding_start_is_that_of_the_curve_at_the_speed_of_the_surfac
 }
 
 #[test]
-fn a_share_of_the_friction_scales_what_rubs_and_nothing_else() {
+fn a_share_of_the_friction_scales_friction_alone() {
     for start in [StartFriction::BreakAway, StartFriction::Sliding] {
         let whole = parameters(&BASE).with_friction_at_rest(start);
         let force = |law| static_contact(&law, &NODE, 0.0402, 0.0, 12.6);
@@ -598,7 +598,7 @@ fn opposed_lanes_are_independent() {
 }
 
 #[test]
-fn fast_sliding_is_where_friction_hardly_changes() {
+fn friction_hardly_changes_in_fast_sliding() {
     for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.299), (1.0, 0.5)] {
         let parameters = parameters(&ContactLaw { static_friction, dynamic_friction, ..SOFT });
         let fast: f64 = parameters.fast_sliding();
@@ -663,28 +663,28 @@ fn an_implicit_force_holds_a_node_without_clearance_in_its_place() {
             normal: 2000.0,
             friction: 0.0,
         };
-        let mut sweep = || {
+        let mut iterate = || {
             let contact = implicit_contact(&parameters, &node, &motion(force), 12.6, &yielding);
             force = [contact.force_u, contact.force_v];
             (yielding.force, yielding.normal, yielding.friction) = (force, contact.normal, contact.friction);
             force
         };
         // Friction turns with the direction, which the next contact iteration knows: the remainder falls by mu an iteration.
-        let swept = [sweep(), sweep(), sweep(), sweep(), sweep(), sweep()];
-        let exact = dynamic_contact(&parameters, &node, &motion(swept[5]), 12.6);
+        let iterates = [iterate(), iterate(), iterate(), iterate(), iterate(), iterate()];
+        let exact = dynamic_contact(&parameters, &node, &motion(iterates[5]), 12.6);
         let size = exact.force_u.hypot(exact.force_v);
-        let off = |force: [f64; 2]| (force[0] - swept[5][0]).hypot(force[1] - swept[5][1]) / size;
+        let off = |force: [f64; 2]| (force[0] - iterates[5][0]).hypot(force[1] - iterates[5][1]) / size;
         assert!(exact.normal > 1000.0, "{exact:?}");
-        let left = (exact.force_u - swept[5][0]).hypot(exact.force_v - swept[5][1]) / size;
-        assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {swept:?}");
-        assert!(off(swept[1]) < 0.1, "two sweeps: {swept:?}");
+        let left = (exact.force_u - iterates[5][0]).hypot(exact.force_v - iterates[5][1]) / size;
+        assert!(left < 1e-2, "clearance {clearance}: {left}, {exact:?} against {iterates:?}");
+        assert!(off(iterates[1]) < 0.1, "two iterations: {iterates:?}");
     }
 }
 
 /// Friction of the contact iteration before, out of all proportion to the push, turns such a node by less than a right angle: the wall still holds
 /// it, and the iterations come to the same force as from any other start.
 #[test]
-fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
+fn friction_of_the_previous_iteration_cannot_turn_a_node_off_the_wall() {
     let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
     let parameters = parameters(&law);
     let node = ContactNode { clearance: 1e-7, ..NODE };
@@ -697,7 +697,7 @@ fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
         v_rate: rate * compliance * force_v,
         theta_z_rate: 0.0,
     };
-    let swept = |friction: f64| {
+    let iterates = |friction: f64| {
         let mut force = [-2000.0, 0.0];
         let mut yielding = Yielding {
             lateral: compliance,
@@ -714,13 +714,14 @@ fn friction_of_the_sweep_before_cannot_turn_a_node_off_the_wall() {
             contact
         })
     };
-    let settled = swept(0.0)[9];
+    let settled = iterates(0.0)[9];
     for friction in [2400.0, 2600.0, 1e4, 1e6] {
         for friction in [friction, -friction] {
-            let sweeps = swept(friction);
-            assert!(sweeps.iter().all(|contact| contact.normal > 0.0), "{friction}: {sweeps:?}");
-            let off = (sweeps[9].force_u - settled.force_u).hypot(sweeps[9].force_v - settled.force_v);
-            assert!(off < 1e-2 * settled.normal, "{friction}: {:?} for {settled:?}", sweeps[9]);
+            let iterations = iterates(friction);
+            assert!(iterations.iter().all(|contact| contact.normal > 0.0), "{friction}: {iterations:?}");
+            let off =
+                (iterations[9].force_u - settled.force_u).hypot(iterations[9].force_v - settled.force_v);
+            assert!(off < 1e-2 * settled.normal, "{friction}: {:?} for {settled:?}", iterations[9]);
         }
     }
 }
@@ -763,7 +764,7 @@ fn an_element_deflects_on_the_wall_as_its_beam_does_at_its_ends_and_in_the_middl
 }
 
 #[test]
-fn loads_are_derivatives_of_the_energy_in_the_wall_whatever_part_of_an_element_is_in_it() {
+fn loads_are_derivatives_of_the_energy_of_any_part_in_the_wall() {
     let clearance = SEGMENT.wall.clearance;
     let mut next = numbers();
     let mut parts = [0; 4];
@@ -839,7 +840,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
 }
 
 #[test]
-fn contact_of_an_element_grows_from_zero_wherever_it_begins() {
+fn contact_of_an_element_grows_from_zero_at_any_place() {
     let law = parameters(&FRICTIONLESS);
     let clearance = SEGMENT.wall.clearance;
     // Bulging between its ends, and rolling over one end.

@@ -4,7 +4,7 @@ use drillsweep_scenario::{ActiveEffects, AutoRule, Effect, Scenario, Switch};
 use serde::Serialize;
 
 use super::register::term;
-use crate::force::term::{LateralWave, Scene};
+use crate::force::term::{EffectContext, LateralWave};
 
 /// Change of frequencies below which the aggressive rule omits an effect.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -36,16 +36,13 @@ pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
             Switch::On => (true, "requested".to_owned()),
             Switch::Off => (false, "switched off".to_owned()),
             Switch::Auto => {
-                let call = (term(effect).called_for)(&Scene { scenario, active: &active });
+                let decision = (term(effect).decide)(&EffectContext { scenario, active: &active });
                 let change = frequency_change(scenario, effect);
                 let neglects = scenario.effects.auto == AutoRule::Aggressive;
-                if call.active && neglects && change < NEGLIGIBLE {
-                    (
-                        false,
-                        format!("left out as small: it changes frequencies by about {change:.0e} of them"),
-                    )
+                if decision.active && neglects && change < NEGLIGIBLE {
+                    (false, format!("omitted as small: relative change of frequencies about {change:.0e}"))
                 } else {
-                    (call.active, call.reason.to_owned())
+                    (decision.active, decision.reason.to_owned())
                 }
             }
         };
@@ -97,12 +94,12 @@ mod tests {
     }
 
     #[test]
-    fn the_base_case_calls_for_everything() {
+    fn auto_omits_nothing_in_the_base_case() {
         assert_eq!(left_out(|_| {}), [""; 0]);
     }
 
     #[test]
-    fn a_scene_calls_for_what_it_has() {
+    fn auto_omits_effects_that_the_scenario_lacks() {
         let fluid =
             ["fluid_added_mass", "fluid_damping", "fluid_coriolis", "flow_stiffness", "mud_drag", "buoyancy"];
         assert_eq!(left_out(|s| s.mud = None), fluid);
@@ -174,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn small_effects_are_left_out_only_where_that_is_asked_for_and_with_an_estimate() {
+    fn the_aggressive_rule_omits_small_effects_with_an_estimate() {
         let mut scenario = paper();
         assert!(decide_effects(&scenario).iter().all(|decision| decision.active));
         scenario.effects.auto = AutoRule::Aggressive;
@@ -185,7 +182,7 @@ mod tests {
         let change = frequency_change(&scenario, Effect::Gyroscopic);
         assert!((change / 7.5e-5 - 1.0).abs() < 0.3, "{change:e}");
         assert!(!of(Effect::Gyroscopic).active);
-        assert!(of(Effect::Gyroscopic).reason.contains("e-5 of them"), "{:?}", of(Effect::Gyroscopic));
+        assert!(of(Effect::Gyroscopic).reason.contains("e-5"), "{:?}", of(Effect::Gyroscopic));
         assert!(of(Effect::Contact).active && of(Effect::FluidDamping).active);
         // Fast flow has an effect.
         scenario.mud.as_mut().unwrap().flow_rate = 0.5;
@@ -195,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_has_one_key_whether_an_effect_is_asked_for_or_called_for() {
+    fn an_effect_on_and_an_effect_that_auto_activates_share_a_key() {
         let mut asked = paper();
         for &effect in Effect::ALL {
             asked.effects.set(effect, Switch::On);

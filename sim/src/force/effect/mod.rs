@@ -9,5 +9,6 @@ pub use register::{ACCOUNTS, CONTACT_WORK};
 
 pub use crate::force::term::gravity::GRAVITY;
 pub use crate::force::term::{
-    Account, Booked, Call, DAMPING, ElementAtRest, ElementInMotion, MotionTerms, RestTerms, Scene, Side,
+    Account, Booked, DAMPING, Decision, EffectContext, ElementAtRest, ElementInMotion, MotionTerms,
+    RestTerms, Side,
 };

@@ -72,7 +72,7 @@ mod tests {
             );
             assert_ne!(
                 account.side,
-                Side::Beside,
+                Side::Supplementary,
                 "{}: what is booked there is not in the balance",
                 account.name
             );

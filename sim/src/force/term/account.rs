@@ -23,7 +23,7 @@ pub enum Side {
     /// Energy taken from it.
     Taken,
     /// Neither: a combination of other accounts, reported in addition to them.
-    Beside,
+    Supplementary,
 }
 
 /// Energies that the ledger has booked since the start of a run, for the value of an account \[J\].
@@ -60,7 +60,7 @@ impl Account {
 
     /// An account that is reported in addition to the balance.
     pub(crate) const fn beside(name: &'static str, value: fn(&Booked<'_>) -> f64) -> Self {
-        Self { name, side: Side::Beside, is_passed_on: false, value }
+        Self { name, side: Side::Supplementary, is_passed_on: false, value }
     }
 
     /// The same, for energy that the drive passes straight on to steady sliding.
@@ -75,7 +75,7 @@ impl Side {
         match self {
             Side::Given => sum + value,
             Side::Taken => sum - value,
-            Side::Beside => sum,
+            Side::Supplementary => sum,
         }
     }
 }

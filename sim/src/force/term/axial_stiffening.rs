@@ -1,14 +1,14 @@
 //! Stiffening by the effective tension: without it tension changes no lateral stiffness.
 
+use super::context::yes;
+use super::context::{Decision, EffectContext};
 use super::contribution::Term;
 use super::element::{ElementAtRest, RestTerms};
-use super::scene::yes;
-use super::scene::{Call, Scene};
 
-pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
+pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(decide) };
 
-fn called_for(scene: &Scene<'_>) -> Call {
-    if scene.active.gravity {
+fn decide(context: &EffectContext<'_>) -> Decision {
+    if context.active.gravity {
         yes("weight and weight on bit load the string")
     } else {
         yes("weight on bit, drag and the wall load the string")

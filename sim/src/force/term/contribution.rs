@@ -1,13 +1,13 @@
 //! Contributions of an effect to the model.
 
+use super::context::{Decision, EffectContext, LateralWave};
 use super::element::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
-use super::scene::{Call, LateralWave, Scene};
 
 /// Contributions of an effect.
 #[derive(Clone, Copy)]
 pub(crate) struct Term {
     /// Decision on whether a scenario needs the effect, with its reason.
-    pub(crate) called_for: fn(&Scene<'_>) -> Call,
+    pub(crate) decide: fn(&EffectContext<'_>) -> Decision,
     /// Estimated relative change of the frequency of a lateral wave; absent without such an estimate.
     pub(crate) frequency_change: Option<fn(&LateralWave) -> f64>,
     /// Adds its terms to an element, independently of the equilibrium.
@@ -20,8 +20,8 @@ pub(crate) struct Term {
 
 impl Term {
     /// Term of an effect that only decides whether it is active.
-    pub(crate) const fn new(called_for: fn(&Scene<'_>) -> Call) -> Self {
-        Self { called_for, frequency_change: None, at_rest: None, in_motion: None, moves: None }
+    pub(crate) const fn new(decide: fn(&EffectContext<'_>) -> Decision) -> Self {
+        Self { decide, frequency_change: None, at_rest: None, in_motion: None, moves: None }
     }
 
     /// Adds the effect's terms to an element, independently of the equilibrium.

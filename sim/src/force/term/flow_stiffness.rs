@@ -1,9 +1,9 @@
 //! Flow stiffness of both flows with its end term, and their centrifugal load on the curved centre line: without it the
 //! mud's momentum has no effect.
 
+use super::context::{LateralWave, has_flow};
 use super::contribution::Term;
 use super::element::{ElementAtRest, RestTerms};
-use super::scene::{LateralWave, has_flow};
 
 pub(crate) const TERM: Term =
     Term { frequency_change: Some(frequency_change), at_rest: Some(at_rest), ..Term::new(has_flow) };

@@ -1,8 +1,8 @@
 //! Added mass of the mud inside and outside, equation (28): without it only steel moves.
 
+use super::context::has_mud;
 use super::contribution::Term;
 use super::element::{ElementInMotion, MotionTerms};
-use super::scene::has_mud;
 
 pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(has_mud) };
 

@@ -1,9 +1,9 @@
 //! Coriolis terms of both flows: without them a flow does no work on a travelling bend.
 
 use super::account::Account;
+use super::context::{LateralWave, has_flow};
 use super::contribution::Term;
 use super::element::{ElementInMotion, MotionTerms};
-use super::scene::{LateralWave, has_flow};
 
 pub(crate) const TERM: Term =
     Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(has_flow) };

@@ -1,9 +1,9 @@
 //! Damping of lateral motion by the mud, by its axial flow (C_f) and by the string's rotation (k): without it the mud takes no energy.
 
 use super::account::Account;
+use super::context::has_mud;
 use super::contribution::Term;
 use super::element::{ElementInMotion, MotionTerms};
-use super::scene::has_mud;
 
 pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(has_mud) };
 

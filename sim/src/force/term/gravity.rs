@@ -1,15 +1,15 @@
 //! Gravity: without it neither the string nor the mud has weight.
 
+use super::context::yes;
+use super::context::{Decision, EffectContext};
 use super::contribution::Term;
-use super::scene::yes;
-use super::scene::{Call, Scene};
 
-pub(crate) const TERM: Term = Term::new(called_for);
+pub(crate) const TERM: Term = Term::new(decide);
 
 /// Gravity \[m/s2\], the value behind the buoyed weights of the hydraulic tables.
 pub const GRAVITY: f64 = 9.81;
 
-fn called_for(_: &Scene<'_>) -> Call {
+fn decide(_: &EffectContext<'_>) -> Decision {
     yes("the string has weight")
 }
 

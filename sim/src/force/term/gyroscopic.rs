@@ -1,15 +1,15 @@
 //! Gyroscopic coupling of the lateral rotations: without it forward and backward whirl have the same frequency.
 
+use super::context::{Decision, EffectContext};
+use super::context::{LateralWave, no, yes};
 use super::contribution::Term;
 use super::element::{ElementInMotion, MotionTerms};
-use super::scene::{Call, Scene};
-use super::scene::{LateralWave, no, yes};
 
 pub(crate) const TERM: Term =
-    Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(called_for) };
+    Term { frequency_change: Some(frequency_change), in_motion: Some(in_motion), ..Term::new(decide) };
 
-fn called_for(scene: &Scene<'_>) -> Call {
-    if scene.turns() { yes("the string turns") } else { no("the string does not turn") }
+fn decide(context: &EffectContext<'_>) -> Decision {
+    if context.turns() { yes("the string turns") } else { no("the string does not turn") }
 }
 
 /// To first order the rotary moments 2 rho I W change w by rho I W k^2 / (m w), and the wave turns with the string: w = W.

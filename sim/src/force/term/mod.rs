@@ -9,6 +9,7 @@ pub(crate) mod account;
 pub(crate) mod axial_motion;
 pub(crate) mod axial_stiffening;
 pub(crate) mod buoyancy;
+pub(crate) mod context;
 pub(crate) mod contribution;
 pub(crate) mod element;
 pub(crate) mod flow_stiffness;
@@ -18,7 +19,6 @@ pub(crate) mod fluid_damping;
 pub(crate) mod gravity;
 pub(crate) mod gyroscopic;
 pub(crate) mod mud_drag;
-pub(crate) mod scene;
 pub(crate) mod structural_damping;
 pub(crate) mod torque_stiffening;
 pub(crate) mod torsion;
@@ -26,10 +26,10 @@ pub(crate) mod transient;
 pub(crate) mod well_bending;
 
 pub use account::{Account, Booked, Side};
+pub use context::{Decision, EffectContext};
+pub(crate) use context::{LateralWave, has_friction, no, yes};
 pub(crate) use contribution::Term;
 pub use element::{ElementAtRest, ElementInMotion, MotionTerms, RestTerms};
-pub use scene::{Call, Scene};
-pub(crate) use scene::{LateralWave, has_friction, no, yes};
 
 /// The accounts of the matrices that multiply velocities, in the order in which these are summed up; `None` is that of skew matrices, which do
 /// no work.

@@ -1,7 +1,7 @@
 //! Axial drag of the annular flow on the string, upward: without it the flow changes no tension.
 
+use super::context::has_flow;
 use super::contribution::Term;
-use super::scene::has_flow;
 use crate::force::mud::ElementFlow;
 
 pub(crate) const TERM: Term = Term::new(has_flow);

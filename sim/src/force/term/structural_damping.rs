@@ -1,18 +1,18 @@
 //! Rayleigh damping: without it the structure takes no energy.
 
 use super::account::Account;
+use super::context::{Decision, EffectContext};
+use super::context::{no, yes};
 use super::contribution::Term;
 use super::element::{ElementInMotion, MotionTerms};
-use super::scene::{Call, Scene};
-use super::scene::{no, yes};
 
-pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(called_for) };
+pub(crate) const TERM: Term = Term { in_motion: Some(in_motion), ..Term::new(decide) };
 
 /// Energy dissipated by Rayleigh damping: int v^T C v dt.
 pub(crate) const DISSIPATED: Account = Account::taken("dissipated_structure", |booked| booked.matrices);
 
-fn called_for(scene: &Scene<'_>) -> Call {
-    let damping = &scene.scenario.damping;
+fn decide(context: &EffectContext<'_>) -> Decision {
+    let damping = &context.scenario.damping;
     if damping.mass_proportional != 0.0 || damping.stiffness_proportional != 0.0 {
         yes("the structure is damped")
     } else {

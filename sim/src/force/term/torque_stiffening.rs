@@ -1,14 +1,14 @@
 //! Stiffening by the internal torque: without it torque couples no lateral motion.
 
+use super::context::{Decision, EffectContext};
+use super::context::{no, yes};
 use super::contribution::Term;
 use super::element::{ElementAtRest, RestTerms};
-use super::scene::{Call, Scene};
-use super::scene::{no, yes};
 
-pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(called_for) };
+pub(crate) const TERM: Term = Term { at_rest: Some(at_rest), ..Term::new(decide) };
 
-fn called_for(scene: &Scene<'_>) -> Call {
-    match (scene.scenario.operation.torque_on_bit != 0.0, scene.active.friction_torque) {
+fn decide(context: &EffectContext<'_>) -> Decision {
+    match (context.scenario.operation.torque_on_bit != 0.0, context.active.friction_torque) {
         (true, _) => yes("torque on bit"),
         (false, true) => yes("friction twists the string"),
         // A curved hole guides torque but does not produce it.

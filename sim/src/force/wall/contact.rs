@@ -2,11 +2,11 @@
 //! four nodes at a time.
 
 use super::{FRICTION_WORK, NORMAL_WORK};
-use crate::force::term::{Account, Call, Scene, Term, yes};
+use crate::force::term::{Account, Decision, EffectContext, Term, yes};
 use crate::math::dof::LATERAL;
 use crate::math::linalg::Lane;
 
-pub(crate) const TERM: Term = Term::new(called_for);
+pub(crate) const TERM: Term = Term::new(decide);
 
 /// Energy dissipated by the contacts' dampers: energy that the wall takes from the motion along its normals and does not store.
 pub(crate) const DISSIPATED: Account =
@@ -16,7 +16,7 @@ pub(crate) const DISSIPATED: Account =
 pub(crate) const WORK: Account =
     Account::beside("contact_work", |booked| booked.by_force(NORMAL_WORK) + booked.by_force(FRICTION_WORK));
 
-fn called_for(_: &Scene<'_>) -> Call {
+fn decide(_: &EffectContext<'_>) -> Decision {
     yes("the string may reach the wall; until then only the distance is computed")
 }
 

@@ -1,6 +1,6 @@
 //! Forces of the wall in motion.
 
-use super::change::SweepChange;
+use super::change::IterationChange;
 use super::segments::{LawAlong, SegmentForces, Segments};
 use crate::force::contact::{
     ContactForce, ContactNode, ContactParameters, ContactSegment, LateralMotion, SegmentCompliance,
@@ -404,14 +404,14 @@ impl<const D: usize> WallForces<D> {
 
     /// Effect at touching nodes of the changes of the motion between two contact iterations of a solve: `x` less `before` in displacements, times
     /// `speed` \[1/s\] in velocities.
-    pub(crate) fn sweep_change(
+    pub(crate) fn iteration_change(
         &self,
         contact: &ContactForces,
         x: &NodalField<D>,
         before: &NodalField<D>,
         rates: impl Fn(usize, usize) -> Four,
         speed: f64,
-    ) -> SweepChange {
+    ) -> IterationChange {
         let mut most = [Four::splat(0.0); 2];
         for (group, _) in contact.touching() {
             let (x, before) = (&x.groups()[group], &before.groups()[group]);
@@ -423,9 +423,9 @@ impl<const D: usize> WallForces<D> {
             most[1] = self.friction_change(group, x, &rates, &faster).max(most[1]);
         }
         let [lateral, friction] = most.map(|most| most.to_array().into_iter().fold(0.0, f64::max));
-        let mut change = SweepChange { lateral, friction };
+        let mut change = IterationChange { lateral, friction };
         let along = &contact.along;
-        change.merge(self.segments.sweep_change(&self.parameters, along, x, before, &rates, speed));
+        change.merge(self.segments.iteration_change(&self.parameters, along, x, before, &rates, speed));
         change
     }
 

@@ -10,7 +10,7 @@ pub(crate) mod friction_torque;
 mod lanes;
 mod segments;
 
-pub(crate) use change::SweepChange;
+pub(crate) use change::IterationChange;
 pub(crate) use lanes::{Compliance, ContactForces, NodeContact, NodesAtWall, WallForces};
 
 /// Entry of the ledger: work of normal forces on the motion.

@@ -3,7 +3,7 @@
 //! Element e joins the nodes e and e + 1, so that the elements of a group begin at the nodes of the group of the same number and end at those after
 //! each of them.
 
-use super::change::SweepChange;
+use super::change::IterationChange;
 use crate::force::contact::{
     ContactNode, ContactParameters, ContactSegment, Plane, SegmentCompliance, SegmentForce, SegmentMotion,
     Surface, Wall, dot,
@@ -254,8 +254,8 @@ impl<const D: usize> Segments<D> {
     }
 
     /// Changes between two iterations of a solve at touching elements, as in
-    /// [`WallForces::sweep_change`](super::WallForces::sweep_change).
-    pub(super) fn sweep_change(
+    /// [`WallForces::iteration_change`](super::WallForces::iteration_change).
+    pub(super) fn iteration_change(
         &self,
         law: &ContactParameters<Four>,
         forces: &SegmentForces,
@@ -263,7 +263,7 @@ impl<const D: usize> Segments<D> {
         before: &NodalField<D>,
         rates: &impl Fn(usize, usize) -> Four,
         speed: f64,
-    ) -> SweepChange {
+    ) -> IterationChange {
         let (mut lateral, mut friction) = (Four::ZERO, Four::ZERO);
         let speed = Four::splat(speed);
         for (group, force) in forces.touching() {
@@ -275,7 +275,7 @@ impl<const D: usize> Segments<D> {
             friction = self.friction_change(law, (group, force), x, rates, &faster).max(friction);
         }
         let largest = |values: Four| values.to_array().into_iter().fold(0.0, f64::max);
-        SweepChange { lateral: largest(lateral), friction: largest(friction) }
+        IterationChange { lateral: largest(lateral), friction: largest(friction) }
     }
 
     /// Changes of the friction coefficient in the middle of the contact of each element for a change of velocities: by the slope of the

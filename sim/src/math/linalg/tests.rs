@@ -158,7 +158,7 @@ fn small_skew_entries_are_left_out() {
 }
 
 #[test]
-fn a_field_holds_what_its_nodes_hold() {
+fn a_field_holds_the_values_of_its_nodes() {
     let mut numbers = Numbers(11);
     for rows in ROW_COUNTS {
         let nodes = numbers.vector(rows);

@@ -556,7 +556,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_differ_by_what_was_put_into_them() {
+    fn halves_differ_by_the_imposed_change() {
         let size = |time: f64| if time < 10.0 { 1e-3 } else { 2e-3 };
         let stepping =
             course(20.0, |time| [size(time) * (TAU * time).cos(), size(time) * (TAU * time).sin()], |_| 0.0);

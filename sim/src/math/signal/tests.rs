@@ -24,7 +24,7 @@ const ALL: PeakSearch = PeakSearch { count: 10, min_separation_hz: 0.0, exclude_
 const CIRCLES: [(f64, f64, f64); 3] = [(2.0, 1.5e-3, 0.3), (-2.7, 4e-4, 1.1), (0.0, 0.0376, -0.8)];
 
 #[test]
-fn a_forward_and_backward_orbit_stands_on_its_sides_with_its_radii() {
+fn components_of_an_orbit_have_lines_at_their_signed_frequencies() {
     for count in [10_000, 9_000, 3_000] {
         let rate = f64::from(count) / 10.0;
         let (u, v) = orbit(&CIRCLES, rate, count as usize);
@@ -116,7 +116,7 @@ fn a_lone_line_between_bins_is_found() {
 /// A lone line has its own amplitude at any place between two bins. The closed forms are those of many samples: N sin(pi d / N)
 /// in place of pi d, and its effect on the offset, are both within (pi / N)^2 of them.
 #[test]
-fn a_lone_line_has_its_amplitude_wherever_it_lies() {
+fn a_single_line_has_its_amplitude_at_any_frequency() {
     let amplitude = 1e-2;
     for count in [64_u32, 1_000, 10_000] {
         let bound = (std::f64::consts::PI / f64::from(count)).powi(2) + 1e-11;
@@ -170,7 +170,7 @@ fn peaks_keep_their_distance_their_number_and_leave_out_the_mean() {
 }
 
 #[test]
-fn windows_are_half_open_whatever_the_rounding() {
+fn windows_are_half_open_despite_rounding() {
     let range = |from, to| sample_range(from, to, 1000.0, 60_001);
     assert_eq!(range(15.0, 25.0), 15_000..25_000);
     assert_eq!(range(50.0, 60.0), 50_000..60_000);

@@ -16,7 +16,7 @@ use crate::force::contact::{ContactNode, ContactSegment, Wall};
 use crate::force::drive::Drive;
 use crate::force::effect::active_effects;
 use crate::force::list::nodal_forces;
-use crate::force::nodal::{At, Dependence, ForceScene, NodalForce, NodeMotion};
+use crate::force::nodal::{At, Dependence, ForceContext, NodalForce, NodeMotion};
 use crate::math::dof::{DOFS, THETA_Z, U, V, W};
 use crate::math::linalg::{Block, BlockTridiagonal};
 use crate::string::beam::{BeamSection, ElementMatrix, ElementVector};
@@ -92,11 +92,11 @@ impl Model {
             })
             .collect();
         let drive = Drive::new(&scenario.operation);
-        let force_scene = ForceScene { scenario, effects: &effects, nodes: &mesh.nodes, drive: &drive };
+        let force_context = ForceContext { scenario, effects: &effects, nodes: &mesh.nodes, drive: &drive };
         Ok(Self {
             scenario: scenario.clone(),
             effects,
-            forces: nodal_forces(&force_scene),
+            forces: nodal_forces(&force_context),
             wall: Self::wall(scenario, &effects, &mesh, &elements),
             mesh,
             frames,

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn eigenvalues_and_values_that_are_not_finite_are_told() {
+    fn non_finite_eigenvalues_and_entries_are_reported() {
         // A node by itself on springs k, mass m: s = i sqrt(k / m) is an eigenvalue.
         let diagonal = |value: f64| {
             let mut matrix = BlockTridiagonal::zeros(NODES);

@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn what_grows_does_not_depend_on_the_number_of_nodes() {
+    fn growth_does_not_depend_on_the_number_of_nodes() {
         // Elements a quarter as long: 1184 of them. Modes that decay in any case are not computed.
         let mut scenario = preset("paper-200m-damped").unwrap();
         let found = |scenario: &Scenario| {
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_do_not_resolve_what_grows_are_told() {
+    fn steps_that_do_not_resolve_a_growing_mode_have_a_warning() {
         let torsion = |highest, mesh| UndampedTorsion {
             modes: 10,
             growing_modes: Some(3),

@@ -11,7 +11,7 @@ use crate::math::signal::Course;
 use crate::solve::step::error_estimate::ErrorSum;
 use crate::solve::step::state::State;
 use crate::solve::step::work::Work;
-use crate::solve::step::{EnergyRow, SweepMonitor, TransientError};
+use crate::solve::step::{ContactIterations, EnergyRow, TransientError};
 
 /// State of a run without its scratch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ pub(super) struct Progress<const D: usize> {
     pub(super) ceiling: u32,
     pub(super) state: State<D>,
     pub(super) work: Work,
-    pub(super) monitor: SweepMonitor,
+    pub(super) iterations: ContactIterations,
     pub(super) errors: ErrorSum,
     pub(super) rejected: u64,
     /// Steps of the shortest length that left more than the tolerance.

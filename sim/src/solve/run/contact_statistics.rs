@@ -18,7 +18,7 @@ pub struct ContactStatistics {
     /// if the window is settled, and so not known during the run.
     pub impulse: f64,
     /// Number of slip-to-stick transitions: the node comes to slide slower than the reference speed of friction.
-    pub capture_count: u64,
+    pub slip_to_stick_count: u64,
     /// Time that it stuck \[s\].
     pub stick_time: f64,
     in_contact: bool,
@@ -48,7 +48,7 @@ impl ContactStatistics {
             self.largest_normal_force = self.largest_normal_force.max(contact.normal_force);
         }
         let sticks = contact.touching && contact.sliding_speed.abs() < sticking_speed;
-        self.capture_count += u64::from(sticks && !self.sticks);
+        self.slip_to_stick_count += u64::from(sticks && !self.sticks);
         self.stick_time += if sticks { duration } else { 0.0 };
         self.in_contact = contact.touching;
         self.sticks = sticks;

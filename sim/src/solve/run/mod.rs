@@ -23,7 +23,7 @@ pub use contact_statistics::ContactStatistics;
 pub use disturbance::{DISTURBANCE, disturbance};
 pub use histories::{Histories, NodeHistory, Series};
 pub use loads::{ElementLoads, LOAD_BYTES, LoadRecords, NodeLoads, Peak, RmsAndPeak, SHOCKS_G, Span};
-pub use recorded::{bit_beside, recorded_nodes};
+pub use recorded::{additional_bit, recorded_nodes};
 pub use records::{Outcome, Records, TransientEffort};
 pub use settle::{
     MotionRegime, OrbitInterval, Settling, course_samples, kept_window_at_most, orbit_window_at_most,
@@ -33,4 +33,4 @@ pub use snapshots::{SNAPSHOT_BLOCK_BYTES, SnapshotBlock, SnapshotSeries, Snapsho
 pub use step_loop::{BLOCK_BYTES, Block, Keep, LEDGER_RATE_HZ};
 pub use transient::Transient;
 
-pub use crate::solve::step::{DivergenceReason, EnergyRow, ErrorEstimate, SweepMonitor, TransientError};
+pub use crate::solve::step::{ContactIterations, DivergenceReason, EnergyRow, ErrorEstimate, TransientError};

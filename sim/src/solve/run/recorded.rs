@@ -9,7 +9,7 @@ pub fn recorded_nodes(model: &Model) -> Vec<usize> {
 
 /// The bit, from 0 at the top, if its rotation and torque are recorded in addition to the histories: if torsion is solved for, any node is
 /// recorded, and the bit is none of them.
-pub fn bit_beside(model: &Model) -> Option<usize> {
+pub fn additional_bit(model: &Model) -> Option<usize> {
     let nodes = recorded_nodes(model);
     let bit = model.node_count().checked_sub(1)?;
     (model.effects.torsion && !nodes.is_empty() && !nodes.contains(&bit)).then_some(bit)

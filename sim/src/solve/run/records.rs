@@ -9,7 +9,7 @@ use super::histories::NodeHistory;
 use super::loads::LoadRecords;
 use super::settle::Settling;
 use crate::math::signal::Course;
-use crate::solve::step::{EnergyRow, ErrorEstimate, SweepMonitor};
+use crate::solve::step::{ContactIterations, EnergyRow, ErrorEstimate};
 
 /// Results of a finished run, with its [`Histories`](super::Histories).
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +62,7 @@ pub struct TransientEffort {
     /// in each period.
     pub resolved_hz: f64,
     /// Contact iterations, with their distance from convergence.
-    pub sweeps: SweepMonitor,
+    pub contact_iterations: ContactIterations,
 }
 
 /// Outcome of a call to [`Transient::run`](super::Transient::run).

@@ -7,7 +7,7 @@ use drillsweep_scenario::{AccuracyPreset, Outputs, Promise, Scenario, TimeWindow
 use serde::{Deserialize, Serialize};
 
 use super::histories::NodeHistory;
-use super::recorded::{bit_beside, recorded_nodes};
+use super::recorded::{additional_bit, recorded_nodes};
 use crate::math::signal::{Allowed, Batches, Course, LONGEST_WINDOW, Window, halves, sample_range};
 use crate::solve::model::Model;
 use crate::solve::modes::{TorsionalMode, growing_torsion};
@@ -257,7 +257,8 @@ impl Settle {
                 smallest_rotation: SMALLEST_ROTATION * model.rotation_speed.abs(),
             },
             bit: model.node_count().checked_sub(1).filter(|bit| {
-                model.effects.torsion && (bit_beside(model).is_some() || recorded_nodes(model).contains(bit))
+                model.effects.torsion
+                    && (additional_bit(model).is_some() || recorded_nodes(model).contains(bit))
             }),
             growing: growing_torsion(model, equilibrium, HIGHEST_WATCHED_HZ),
         }

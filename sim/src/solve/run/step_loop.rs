@@ -8,7 +8,7 @@ use super::checkpoint::{Checkpoint, CheckpointError, Progress};
 use super::contact_statistics::ContactStatistics;
 use super::histories::{NodeHistory, Series};
 use super::loads::{LoadBlocks, Loads, Moment};
-use super::recorded::{bit_beside, recorded_nodes};
+use super::recorded::{additional_bit, recorded_nodes};
 use super::records::{Outcome, Records, TransientEffort};
 use super::settle::{Settle, Settling, course_samples, twin_time};
 use super::snapshots::{Recorder, SnapshotBlock, SnapshotTimes, torque};
@@ -26,7 +26,7 @@ use crate::solve::step::esdirk::Esdirk;
 use crate::solve::step::forces::{ActingForces, Forces};
 use crate::solve::step::generalized_alpha::{self, GeneralizedAlpha};
 use crate::solve::step::grid::Grid;
-use crate::solve::step::implicit::SweepMonitor;
+use crate::solve::step::implicit::ContactIterations;
 use crate::solve::step::method::{Books, Method, StepAhead, StepMade};
 use crate::solve::step::rk4::{self, Rk4};
 use crate::solve::step::state::State;
@@ -108,7 +108,7 @@ pub(super) struct Run<'m, const D: usize> {
 pub struct Block<'a> {
     /// Samples of the recorded nodes.
     pub histories: &'a [NodeHistory],
-    /// The same samples of the bit, if its rotation and torque are recorded in addition: [`bit_beside`](bit_beside).
+    /// The same samples of the bit, if its rotation and torque are recorded in addition: [`additional_bit`](additional_bit).
     pub bit: Option<&'a NodeHistory>,
     /// Snapshots; absent if none are requested.
     pub snapshots: Option<&'a SnapshotBlock>,
@@ -203,7 +203,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 ceiling: grid.top(),
                 state: State::at_rest(&start, forces.points.start(), stepping.step),
                 work: Work::default(),
-                monitor: SweepMonitor::default(),
+                iterations: ContactIterations::default(),
                 errors: ErrorSum::default(),
                 rejected: 0,
                 unresolved: 0,
@@ -237,7 +237,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 .into_iter()
                 .map(|node| NodeHistory::with_capacity(node, block_capacity as usize))
                 .collect(),
-            bit: bit_beside(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
+            bit: additional_bit(model).map(|bit| NodeHistory::with_capacity(bit, block_capacity as usize)),
         };
         run.start()?;
         Ok(run)
@@ -377,7 +377,7 @@ impl<'m, const D: usize> Run<'m, D> {
                 unresolved_steps: self.progress.unresolved,
                 step_range: self.progress.step_range,
                 resolved_hz: resolved_hz(stepping.integrator, self.progress.step_range[1]),
-                sweeps: self.progress.monitor,
+                contact_iterations: self.progress.iterations,
             },
         })))
     }
@@ -628,9 +628,9 @@ impl<'m, const D: usize> Run<'m, D> {
         let Ok(made) = method.advance(forces, ahead, &mut progress.state, acting, books) else {
             return Err(self.diverged(self.fastest, DivergenceReason::StepCollapsed));
         };
-        let StepMade { level, next_level, steps, step_range, rejected, unresolved, mut monitor } = made;
+        let StepMade { level, next_level, steps, step_range, rejected, unresolved, mut iterations } = made;
         progress.level = next_level.unwrap_or(progress.level);
-        progress.monitor.merge(&mut monitor);
+        progress.iterations.merge(&mut iterations);
         progress.rejected += rejected;
         progress.unresolved += unresolved;
         progress.steps += steps;
@@ -696,7 +696,7 @@ fn orbit_samples(scenario: &Scenario, samples: u64) -> Range<u64> {
 
 /// Samples of a block of the model's recorded nodes.
 fn block_samples(model: &Model) -> u64 {
-    let nodes = recorded_nodes(model).len() + usize::from(bit_beside(model).is_some());
+    let nodes = recorded_nodes(model).len() + usize::from(additional_bit(model).is_some());
     let bytes = (nodes * Series::ALL.len() * size_of::<f64>()) as u64;
     (BLOCK_BYTES / bytes.max(1)).clamp(1, BLOCK_SAMPLES)
 }

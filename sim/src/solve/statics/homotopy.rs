@@ -30,13 +30,13 @@ const SPRINGS: [f64; 3] = [3e4, 1e6, 1e3];
 pub(super) fn find(model: &Model, sections: &Sections) -> Option<(NodalVector, NewtonOutcome)> {
     SPRINGS.iter().find_map(|&spring| {
         let mut displacement = vec![[0.0; DOFS]; model.node_count()];
-        let outcome = path::follow(model, &Scene::new(model, sections, spring), &mut displacement)?;
+        let outcome = path::follow(model, &Homotopy::new(model, sections, spring), &mut displacement)?;
         Some((displacement, outcome))
     })
 }
 
 /// Growth of the loads, the friction and the momentum of the flows together.
-struct Scene<'a> {
+struct Homotopy<'a> {
     model: &'a Model,
     sections: &'a Sections,
     /// Load without the mud's drag.
@@ -50,7 +50,7 @@ struct Scene<'a> {
     held: Vec<[bool; DOFS]>,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Homotopy<'a> {
     fn new(model: &'a Model, sections: &'a Sections, spring: f64) -> Self {
         let springs: Vec<f64> = tributary_lengths(model).iter().map(|length| spring * length).collect();
         // At a distance from the wall equal to its clearance, the wall's force is K_c width^2 / (4 j0): about that of the spring there.
@@ -124,7 +124,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl Growth for Scene<'_> {
+impl Growth for Homotopy<'_> {
     fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
         let (model, share) = (self.model, at.share);
         let contacts = SmoothWall::new(self, at);
@@ -198,8 +198,8 @@ struct SmoothWall {
 }
 
 impl SmoothWall {
-    fn new(scene: &Scene<'_>, at: &Point) -> Self {
-        let Scene { model, widths, widths_along, .. } = scene;
+    fn new(homotopy: &Homotopy<'_>, at: &Point) -> Self {
+        let Homotopy { model, widths, widths_along, .. } = homotopy;
         let (law, rotation_speed, share) = (model.wall.law(), model.rotation_speed, at.share);
         let node = |((site, [u, v, ..]), width): ((&Option<ContactNode<f64>>, &[f64; DOFS]), &f64)| {
             let width = width * (1.0 - share);
@@ -235,7 +235,7 @@ mod tests {
     use crate::solve::statics::{Equilibrium, contact_at};
 
     #[test]
-    fn path_leads_to_where_friction_holds_a_horizontal_string() {
+    fn path_leads_to_the_friction_equilibrium_of_a_horizontal_string() {
         let (length, elements) = (200.0, 80.0);
         let mut scenario = preset("paper-200m").unwrap();
         scenario.mud = None;

@@ -2,7 +2,7 @@
 
 use drillsweep_scenario::TimeStepping;
 
-use crate::force::wall::SweepChange;
+use crate::force::wall::IterationChange;
 
 /// Errors that a step may leave, for a tolerance on the statistics of a run.
 ///
@@ -22,7 +22,7 @@ pub(crate) struct Tolerances {
     /// Local error of a friction coefficient.
     friction: f64,
     /// Change in the last contact iteration: of a lateral displacement relative to the motion, and of a friction coefficient.
-    sweep: SweepChange,
+    iteration_change: IterationChange,
     /// Smallest motion for relative errors \[m\].
     smallest_motion: f64,
 }
@@ -35,7 +35,7 @@ pub(crate) struct StepError {
     /// Largest local error of a friction coefficient.
     pub(crate) friction: f64,
     /// Changes by the last contact iterations.
-    pub(crate) sweep: SweepChange,
+    pub(crate) iteration_change: IterationChange,
 }
 
 /// Smallest motion, relative to the hole's radius; smaller motion counts as this much. It is 10 um in a hole of 0.2 m, so that a string that hardly
@@ -64,7 +64,7 @@ impl Tolerances {
         Self {
             displacement: statistics * TimeStepping::adaptive(statistics).step / MEMORY,
             friction: 0.3 * statistics,
-            sweep: SweepChange { lateral: 0.06 * statistics, friction: 3.0 * statistics },
+            iteration_change: IterationChange { lateral: 0.06 * statistics, friction: 3.0 * statistics },
             smallest_motion: smallest_motion(hole_radius),
         }
     }
@@ -75,8 +75,8 @@ impl Tolerances {
         let parts = [
             error.displacement / (self.displacement * motion),
             error.friction / self.friction,
-            error.sweep.lateral / (self.sweep.lateral * motion),
-            error.sweep.friction / self.sweep.friction,
+            error.iteration_change.lateral / (self.iteration_change.lateral * motion),
+            error.iteration_change.friction / self.iteration_change.friction,
         ];
         // A value that is not a number exceeds every tolerance: it is handed on, not compared.
         parts.into_iter().fold(0.0, |most, part| if part <= most || most.is_nan() { most } else { part })
@@ -150,7 +150,8 @@ mod tests {
     #[test]
     fn the_worst_part_counts_and_a_part_that_is_not_a_number_is_the_worst() {
         let tolerances = Tolerances { displacement: 1.2e-4, ..Tolerances::new(0.02, 0.1) };
-        let quiet = StepError { displacement: 0.0, friction: 0.0, sweep: SweepChange::default() };
+        let quiet =
+            StepError { displacement: 0.0, friction: 0.0, iteration_change: IterationChange::default() };
         assert_eq!(tolerances.relative(&quiet, 1e-3), 0.0);
         let friction = StepError { friction: 0.02, ..quiet };
         assert!((tolerances.relative(&friction, 1e-3) - 10.0 / 3.0).abs() < 1e-12);
@@ -158,7 +159,10 @@ mod tests {
         assert!((tolerances.relative(&displacement, 1e-3) - 5.0).abs() < 1e-12);
         // In a hole of 0.1 m, rest counts as 10 um of motion.
         assert!((tolerances.relative(&displacement, 0.0) - 500.0).abs() < 1e-9);
-        let lost = StepError { sweep: SweepChange { lateral: f64::NAN, friction: 0.0 }, ..displacement };
+        let lost = StepError {
+            iteration_change: IterationChange { lateral: f64::NAN, friction: 0.0 },
+            ..displacement
+        };
         assert!(tolerances.relative(&lost, 1e-3).is_nan());
     }
 }

@@ -77,7 +77,7 @@ impl EnergyRow {
         for (account, value) in ACCOUNTS.into_iter().zip(self.accounts) {
             if account.is_passed_on {
                 passed_on = account.side.add(passed_on, value);
-            } else if account.side != Side::Beside {
+            } else if account.side != Side::Supplementary {
                 turned_over += value.abs();
             }
         }
@@ -225,7 +225,7 @@ impl<const D: usize> Ledger<D> {
         for ((work, account), taken) in self.work.damping.iter_mut().zip(working()).zip(symmetric) {
             *work = match account.side {
                 Side::Taken => *work + taken,
-                Side::Given | Side::Beside => *work - taken,
+                Side::Given | Side::Supplementary => *work - taken,
             };
         }
         self.work.follower -= skew;
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_turned_over_by_all_but_what_is_passed_on_or_told_beside() {
+    fn turnover_of_a_row_excludes_transfers_and_side_entries() {
         let accounts = ACCOUNTS.map(|account| match account.name {
             "work_rotation" => 1000.0,
             "dissipated_friction" => 990.0,

@@ -121,7 +121,7 @@ impl<const D: usize> Method<D> for Esdirk<D> {
             step_range: [grid.step(level); 2],
             rejected,
             unresolved,
-            monitor: std::mem::take(&mut self.solver.monitor),
+            iterations: std::mem::take(&mut self.solver.iterations),
         })
     }
 
@@ -142,7 +142,7 @@ impl<const D: usize> Esdirk<D> {
         initial: &[[f64; D]],
         forces: &Forces<D>,
         grid: &Grid,
-        sweeps: u32,
+        iteration_limit: u32,
     ) -> Result<Self, SingularBlock> {
         let zero = NodalField::zeros(initial.len());
         let unknowns = forces.points.start().unknowns.len();
@@ -152,7 +152,7 @@ impl<const D: usize> Esdirk<D> {
         };
         Ok(Self {
             levels: (0..=grid.top()).map(level).collect::<Result<_, SingularBlock>>()?,
-            solver: StageSolver::new(system, initial, forces, sweeps),
+            solver: StageSolver::new(system, initial, forces, iteration_limit),
             stages: std::array::from_fn(|_| Stage {
                 displacement: zero.clone(),
                 velocity: zero.clone(),
@@ -259,7 +259,7 @@ impl<const D: usize> Esdirk<D> {
         StepError {
             displacement: ((self.local_error + 2.0 * self.surface_error(h, forces, state)) / values).sqrt(),
             friction,
-            sweep: self.solver.change(),
+            iteration_change: self.solver.change(),
         }
     }
 

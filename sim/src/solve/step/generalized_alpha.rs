@@ -81,7 +81,7 @@ impl<const D: usize> Method<D> for GeneralizedAlpha<D> {
             step_range: [self.step; 2],
             rejected: 0,
             unresolved: 0,
-            monitor: std::mem::take(&mut self.solver.monitor),
+            iterations: std::mem::take(&mut self.solver.iterations),
         })
     }
 
@@ -96,7 +96,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
         initial: &[[f64; D]],
         forces: &Forces<D>,
         step: f64,
-        sweeps: u32,
+        iteration_limit: u32,
         spectral_radius: f64,
     ) -> Result<Self, SingularBlock> {
         let matrix = StageMatrix::new(system, initial, stage_coefficients(step, spectral_radius), forces)?;
@@ -105,7 +105,7 @@ impl<const D: usize> GeneralizedAlpha<D> {
             step,
             spectral_radius,
             matrix,
-            solver: StageSolver::new(system, initial, forces, sweeps),
+            solver: StageSolver::new(system, initial, forces, iteration_limit),
             acceleration_offset: zero.clone(),
             velocity_offset: zero.clone(),
             mean_velocity: zero.clone(),
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_give_second_order_and_the_wanted_dissipation() {
+    fn parameters_give_second_order_and_the_requested_dissipation() {
         for radius in [0.0, 0.5, SPECTRAL_RADIUS, 0.95] {
             let (alpha_m, alpha_f, beta, gamma) = parameters(radius);
             // Chung and Hulbert (1993): second order, and the two ways to write the radius at infinity agree.

@@ -9,7 +9,7 @@
 //! have to converge only in the forces of nodes on each other.
 
 use super::forces::{ActingForces, Forces, StageAt, StageCompliance};
-use crate::force::wall::SweepChange;
+use crate::force::wall::IterationChange;
 use crate::math::dof::LATERAL;
 use crate::math::linalg::{
     BlockTridiagonal, Factor, Four, Lane, MatrixPair, NodalField, SingularBlock, Symmetric,
@@ -19,11 +19,11 @@ use crate::solve::motion::DynamicSystem;
 
 /// Changes between two contact iterations at which more of them are pointless: of a lateral displacement \[m\], which is 0.01 N of contact force at
 /// 1e7 N/m, and of a friction coefficient.
-const CONVERGED: SweepChange = SweepChange { lateral: 1e-9, friction: 1e-6 };
+const CONVERGED: IterationChange = IterationChange { lateral: 1e-9, friction: 1e-6 };
 
 /// Changes of the last contact iteration beyond which a solve counts as loose: 1e-5 m is 100 N of contact force at 1e7 N/m, the weight of some
 /// decimetres of drillpipe, and 0.05 is a sixth to a quarter of usual friction coefficients. Loose solves are counted and have no other effect.
-const LOOSE: SweepChange = SweepChange { lateral: 1e-5, friction: 0.05 };
+const LOOSE: IterationChange = IterationChange { lateral: 1e-5, friction: 0.05 };
 
 /// The matrix of the stages of one step length, factored.
 #[derive(Debug, Clone)]
@@ -41,7 +41,8 @@ pub(crate) struct StageMatrix<const D: usize> {
 pub(crate) struct StageSolver<const D: usize> {
     mass_and_damping: MatrixPair<Symmetric, D>,
     held: Vec<(usize, usize)>,
-    sweeps: u32,
+    /// Number of contact iterations of a solve; more than two are a limit.
+    iteration_limit: u32,
     external: NodalField<D>,
     right: NodalField<D>,
     /// Intermediate values of a solve: written on the way inwards, read on the way outwards.
@@ -54,9 +55,9 @@ pub(crate) struct StageSolver<const D: usize> {
     previous: NodalField<D>,
     /// Forces of the last contact iteration.
     pub(crate) acting: ActingForces,
-    pub(crate) monitor: SweepMonitor,
+    pub(crate) iterations: ContactIterations,
     /// Changes by the last contact iterations of the solves of a step.
-    change: SweepChange,
+    change: IterationChange,
     /// Largest normal forces in the solves of a step.
     peaks: Vec<Four>,
     /// Room for the normal forces of a solve.
@@ -65,23 +66,23 @@ pub(crate) struct StageSolver<const D: usize> {
 
 /// Distance of a run's contact iterations from convergence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct SweepMonitor {
+pub struct ContactIterations {
     /// Largest change of a touching node's lateral displacement in the last contact iteration of any solve \[m\].
     pub largest_change: f64,
     /// Solves whose last contact iteration still changed a touching node's displacement by more than 1e-5 m or its friction coefficient by more
     /// than 0.05.
     pub loose_solves: u64,
     /// Contact iterations made.
-    pub sweeps: u64,
+    pub count: u64,
 }
 
-impl SweepMonitor {
-    /// Takes in another monitor and empties it.
-    pub(crate) fn merge(&mut self, other: &mut SweepMonitor) {
+impl ContactIterations {
+    /// Takes in another count and empties it.
+    pub(crate) fn merge(&mut self, other: &mut ContactIterations) {
         let other = std::mem::take(other);
         self.largest_change = self.largest_change.max(other.largest_change);
         self.loose_solves += other.loose_solves;
-        self.sweeps += other.sweeps;
+        self.count += other.count;
     }
 }
 
@@ -140,13 +141,13 @@ impl<const D: usize> StageSolver<D> {
         system: &DynamicSystem<D>,
         initial: &[[f64; D]],
         forces: &Forces<D>,
-        sweeps: u32,
+        iteration_limit: u32,
     ) -> Self {
         let zero = NodalField::zeros(initial.len());
         Self {
             mass_and_damping: MatrixPair::new(&system.mass, &system.damping),
             held: system.held_places(),
-            sweeps,
+            iteration_limit,
             external: zero.clone(),
             right: zero.clone(),
             between: vec![[0.0; D]; initial.len()],
@@ -154,8 +155,8 @@ impl<const D: usize> StageSolver<D> {
             velocity: zero.clone(),
             previous: zero,
             acting: ActingForces::none(forces),
-            monitor: SweepMonitor::default(),
-            change: SweepChange::default(),
+            iterations: ContactIterations::default(),
+            change: IterationChange::default(),
             peaks: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
             normal_forces: vec![Four::ZERO; initial.len().div_ceil(Four::LANES)],
         }
@@ -164,12 +165,12 @@ impl<const D: usize> StageSolver<D> {
     /// Begins a step from a state with the forces `acting`.
     pub(crate) fn begin_step(&mut self, acting: &ActingForces) {
         self.acting.copy_from(acting);
-        self.change = SweepChange::default();
+        self.change = IterationChange::default();
         self.peaks.fill(Four::ZERO);
     }
 
     /// Changes by the last contact iterations of the solves of this step.
-    pub(crate) fn change(&self) -> SweepChange {
+    pub(crate) fn change(&self) -> IterationChange {
         self.change
     }
 
@@ -199,10 +200,10 @@ impl<const D: usize> StageSolver<D> {
         }
         let speed = matrix.coefficients.velocity;
         let c = Four::splat(speed);
-        let mut change = SweepChange::default();
-        for sweep in 1..=self.sweeps {
+        let mut change = IterationChange::default();
+        for iteration in 1..=self.iteration_limit {
             let x = &self.displacement;
-            if sweep == 1 {
+            if iteration == 1 {
                 let rates = |group: usize, dof: usize| self.velocity.groups()[group][dof];
                 let (acting, right) = (&mut self.acting, &mut self.right);
                 forces.add_implicit(&matrix.compliance, at, x, rates, acting, (&self.external, right));
@@ -215,12 +216,12 @@ impl<const D: usize> StageSolver<D> {
             }
             std::mem::swap(&mut self.displacement, &mut self.previous);
             matrix.factor.solve_field(&self.right, &mut self.between, &mut self.displacement);
-            self.monitor.sweeps += 1;
+            self.iterations.count += 1;
             // Two contact iterations are a fixed count; more are a cap on the way to convergence.
-            if sweep >= 2 && (self.sweeps > 2 || sweep == self.sweeps) {
+            if iteration >= 2 && (self.iteration_limit > 2 || iteration == self.iteration_limit) {
                 let (moved, offset) = (self.displacement.groups(), velocity_offset.groups());
                 let rates = |group: usize, dof: usize| moved[group][dof].mul_add(c, offset[group][dof]);
-                change = forces.wall.sweep_change(
+                change = forces.wall.iteration_change(
                     &self.acting.wall,
                     &self.displacement,
                     &self.previous,
@@ -234,8 +235,8 @@ impl<const D: usize> StageSolver<D> {
         }
         self.change.merge(change);
         self.acting.wall.add_to_peaks(&mut self.peaks, &mut self.normal_forces);
-        self.monitor.largest_change = self.monitor.largest_change.max(change.lateral);
-        self.monitor.loose_solves += u64::from(!change.is_within(&LOOSE));
+        self.iterations.largest_change = self.iterations.largest_change.max(change.lateral);
+        self.iterations.loose_solves += u64::from(!change.is_within(&LOOSE));
     }
 
     /// Accelerations and velocities of the stage that was solved, from their offsets a^ and v^.

@@ -5,7 +5,7 @@ use super::energy::Ledger;
 use super::error_estimate::ErrorSum;
 use super::forces::{ActingForces, Forces};
 use super::grid::Grid;
-use super::implicit::SweepMonitor;
+use super::implicit::ContactIterations;
 use super::state::State;
 use crate::math::linalg::{Four, NodalField};
 
@@ -63,7 +63,7 @@ pub(crate) struct StepMade {
     pub(crate) rejected: u64,
     /// Steps of the shortest length that left more than the tolerance.
     pub(crate) unresolved: u64,
-    pub(crate) monitor: SweepMonitor,
+    pub(crate) iterations: ContactIterations,
 }
 
 /// A step of an adaptive method became too short.

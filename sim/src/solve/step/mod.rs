@@ -24,4 +24,4 @@ pub use choice::{longest_step, resolved_hz, rk4_stability_limit, step_count, ste
 pub use energy::EnergyRow;
 pub use error_estimate::ErrorEstimate;
 pub use failure::{DivergenceReason, TransientError};
-pub use implicit::SweepMonitor;
+pub use implicit::ContactIterations;

@@ -6,7 +6,7 @@ use super::energy::Ledger;
 use super::error_estimate::ErrorSum;
 use super::forces::{ActingForces, Forces};
 use super::grid::parts;
-use super::implicit::{SweepMonitor, largest_change, multiply_add};
+use super::implicit::{ContactIterations, largest_change, multiply_add};
 use super::method::{Books, Method, StepAhead, StepCollapsed, StepMade};
 use super::state::State;
 use crate::math::linalg::{Factor, Four, General, Lane, MatrixPair, NodalField, SingularBlock};
@@ -93,7 +93,7 @@ impl<const D: usize> Method<D> for Rk4<D> {
             step_range: self.step_range,
             rejected: std::mem::take(&mut self.rejected),
             unresolved: 0,
-            monitor: SweepMonitor::default(),
+            iterations: ContactIterations::default(),
         })
     }
 }

@@ -37,11 +37,11 @@ const POWER_ITERATIONS: usize = 300;
 const MOST_SUBDIVISIONS: u32 = 4096;
 
 /// Largest factor of a contact iteration at which two iterations are enough: they leave a quarter of the predictor's error.
-const LARGEST_SWEEP_FACTOR: f64 = 0.5;
+const LARGEST_ITERATION_FACTOR: f64 = 0.5;
 
 /// Power iterations for the largest factor of a contact iteration, which is compared with one bound. In the base cases with steps of 1 ms, factors of
 /// a tenth and more are within a thousandth of their limits after these, and one of 0.04, far below the bound, within a tenth.
-const SWEEP_ITERATIONS: usize = 40;
+const FACTOR_ITERATIONS: usize = 40;
 
 /// The smallest power of two of equal parts into which `step` must be cut for the contact iterations to be stable.
 ///
@@ -69,8 +69,8 @@ pub(crate) fn subdivisions(
         let Some(coefficients) = coefficients(stepping.step / f64::from(parts)) else {
             return Ok(1);
         };
-        let (factor, node) = sweep_factor(model, system, normal_force, coefficients, is_implicit)?;
-        if factor < LARGEST_SWEEP_FACTOR {
+        let (factor, node) = iteration_factor(model, system, normal_force, coefficients, is_implicit)?;
+        if factor < LARGEST_ITERATION_FACTOR {
             return Ok(parts);
         }
         if parts >= MOST_SUBDIVISIONS {
@@ -99,7 +99,7 @@ pub(crate) fn expected_subdivisions(model: &Model, stepping: &TimeStepping) -> u
 /// `f' = -s / (1 + s g) (A0^-1 - g) f`, so that only the effect of nodes on each other is left. Friction counts as a damper if it rises with
 /// the sliding speed of the rotation, as it does for a string that hardly turns; otherwise it is bounded by its normal force. With
 /// forces that are not implicit the compliances count as zero.
-fn sweep_factor(
+fn iteration_factor(
     model: &Model,
     system: &DynamicSystem,
     normal_force: &[f64],
@@ -185,7 +185,7 @@ fn sweep_factor(
     let mut forces = x.clone();
     let mut along = points.clone();
     let (mut factor, mut node) = (0.0, 0);
-    for _ in 0..SWEEP_ITERATIONS {
+    for _ in 0..FACTOR_ITERATIONS {
         let pushed = |(slope, own): (f64, f64), x: f64| slope / slope.mul_add(own, 1.0) * x;
         for ((force, x), &[lateral, twist]) in forces.iter_mut().zip(&x).zip(&sites) {
             *force =

@@ -1,9 +1,8 @@
-//! Carrying a store over to another one, whichever engines and object stores the two are on.
+//! Transfer of a store to another one, between any engines and object stores.
 //!
-//! Blobs go first: they are named by their content, so that one that is there already is not copied again, and a transfer that was
-//! interrupted resumes. Rows follow in one transaction, table by table as they are, counters and events among them, and
-//! are compared with those that they come from before it is committed: nobody ever sees half a store. What triggers do stands in
-//! the rows already, and none of the schema's is for inserts but to notify waiting processes.
+//! Blobs go first: they are named by their content, so present ones are not copied again, and an interrupted transfer resumes. Rows follow
+//! unchanged in one transaction, counters and events included, and are compared with the source before the commit: a partial store is never
+//! visible. Effects of triggers are in the rows already; the only triggers on inserts notify waiting processes.
 
 mod table;
 
@@ -56,7 +55,7 @@ const AT_ONCE: usize = 8;
 pub enum SourceUse {
     /// It is refused while workers are at it.
     Idle,
-    /// It is taken as it is at this moment; what is changed there later is not carried over.
+    /// The store is copied as of this moment, without later changes.
     Running,
 }
 
@@ -89,7 +88,7 @@ pub struct TransferReport {
     pub bytes_copied: u64,
     /// Work items that were leased, and were given back.
     pub released: u64,
-    /// Blobs that the old store has lost, with what is wrong, one text each. The new one lacks them.
+    /// Blobs that the old store has lost, one text with the reason each. The new store lacks them.
     pub lost: Vec<String>,
 }
 
@@ -104,13 +103,14 @@ pub enum TransferError {
     NotEmpty(&'static str),
     /// Workers are at the old one.
     #[error(
-        "the store is in use: {workers} workers were heard of in the last {} s, and {leases} points are running; stop them first",
+        "the store is in use: {workers} workers sent a heartbeat in the last {} s, and {leases} points are running; \
+         stop them first",
         WORKER_SILENCE.as_secs()
     )]
     InUse {
         /// Leases that have not run out.
         leases: u64,
-        /// Workers heard of lately.
+        /// Workers with a recent heartbeat.
         workers: u64,
     },
     /// The old one is of another version of this program.
@@ -126,13 +126,12 @@ pub enum TransferError {
     Store(#[from] StoreError),
 }
 
-/// Carries a store over to another one, which must have no rows yet. The first is read in one snapshot and not changed, nor is its
-/// schema; only what follows from changes of work items that are pending there is done first. Broken off at any moment, it goes on when
-/// it is called again: blobs that are there and whole are not copied again, rows begin anew. Work that is leased there arrives as given
-/// back, under the fencing token that it has.
+/// Copies a store to another one without rows. The source is read in one snapshot; neither its data nor its schema changes, except that
+/// pending changes of work items are applied first. An interrupted transfer resumes: whole blobs are not copied again, rows are. Leased
+/// work arrives as released, with its fencing token.
 ///
 /// # Errors
-/// One of the stores is not fit for it, or fails. A lost blob is no error: it is [named](TransferReport::lost).
+/// One of the stores is unsuitable or fails. A lost blob is no error, but [reported](TransferReport::lost).
 pub async fn transfer(
     source: &StoreConfig,
     target: &StoreConfig,

@@ -1,5 +1,5 @@
-//! A table by its columns, as the database reports them, read and written whatever they are: a column that a later version adds is carried
-//! without a word about it here. That is why these statements, and no others, are composed.
+//! A table by its columns, as the database reports them: columns of later versions are copied without a change here. These statements alone
+//! are composed at run time.
 
 use futures::stream::BoxStream;
 use futures::{StreamExt, TryStreamExt};
@@ -90,7 +90,7 @@ impl Table {
         Ok(!has_rows)
     }
 
-    /// Copies all rows to the table of the same name of another database, and gives what was read.
+    /// Copies all rows to the table of the same name of another database, and returns the rows read.
     pub(super) async fn copy(
         &self,
         from: &mut Transaction,

@@ -52,8 +52,8 @@ pub fn reduced() -> Scenario {
 }
 
 /// Scenarios by name, the base case first.
-pub fn scenes() -> Vec<(&'static str, Scenario)> {
-    let scene = |name: &'static str, change: &dyn Fn(&mut Scenario)| {
+pub fn scenarios() -> Vec<(&'static str, Scenario)> {
+    let with = |name: &'static str, change: &dyn Fn(&mut Scenario)| {
         let mut scenario = reduced();
         change(&mut scenario);
         (name, scenario)
@@ -77,42 +77,42 @@ pub fn scenes() -> Vec<(&'static str, Scenario)> {
         }
     };
     vec![
-        scene("base case", &|_| {}),
-        scene("heavy mud, fast flow", &|s| mud(s, 0.04, 2100.0)),
-        scene("0.02 m3/s, 1500 kg/m3", &|s| mud(s, 0.02, 1500.0)),
-        scene("0.06 m3/s, 1800 kg/m3", &|s| mud(s, 0.06, 1800.0)),
-        scene("friction steeper", &|s| s.contact.friction_reference_speed = 0.02),
-        scene("friction steeper still", &|s| s.contact.friction_reference_speed = 0.005),
-        scene("no adhesion", &|s| s.contact.adhesion = Adhesion::None),
-        scene("hard wall", &|s| (s.contact.stiffness, s.contact.damping) = (1e8, 1e5)),
-        scene("soft wall", &|s| (s.contact.stiffness, s.contact.damping) = (1e6, 1e3)),
-        scene("wall that hardly damps", &|s| s.contact.damping = 1e2),
-        scene("building well", &|s| {
+        with("base case", &|_| {}),
+        with("heavy mud, fast flow", &|s| mud(s, 0.04, 2100.0)),
+        with("0.02 m3/s, 1500 kg/m3", &|s| mud(s, 0.02, 1500.0)),
+        with("0.06 m3/s, 1800 kg/m3", &|s| mud(s, 0.06, 1800.0)),
+        with("friction steeper", &|s| s.contact.friction_reference_speed = 0.02),
+        with("friction steeper still", &|s| s.contact.friction_reference_speed = 0.005),
+        with("no adhesion", &|s| s.contact.adhesion = Adhesion::None),
+        with("hard wall", &|s| (s.contact.stiffness, s.contact.damping) = (1e8, 1e5)),
+        with("soft wall", &|s| (s.contact.stiffness, s.contact.damping) = (1e6, 1e3)),
+        with("wall that hardly damps", &|s| s.contact.damping = 1e2),
+        with("building well", &|s| {
             s.well.survey = well([[0.0, 25.0, 0.0], [100.0, 40.0, 10.0], [200.0, 60.0, 15.0]]);
         }),
-        scene("horizontal well", &|s| {
+        with("horizontal well", &|s| {
             s.well.survey = well([[0.0, 85.0, 0.0], [80.0, 90.0, 0.0], [200.0, 88.0, 0.0]]);
         }),
-        scene("nearly vertical well", &|s| {
+        with("nearly vertical well", &|s| {
             s.well.survey = well([[0.0, 0.0, 0.0], [100.0, 3.0, 0.0], [200.0, 8.0, 0.0]]);
         }),
-        scene("60 rpm", &|s| s.operation.rotation_speed_rpm = 60.0),
-        scene("80 rpm", &|s| s.operation.rotation_speed_rpm = 80.0),
-        scene("100 rpm", &|s| s.operation.rotation_speed_rpm = 100.0),
-        scene("180 rpm", &|s| s.operation.rotation_speed_rpm = 180.0),
-        scene("40 rpm, static friction 0.5", &|s| {
+        with("60 rpm", &|s| s.operation.rotation_speed_rpm = 60.0),
+        with("80 rpm", &|s| s.operation.rotation_speed_rpm = 80.0),
+        with("100 rpm", &|s| s.operation.rotation_speed_rpm = 100.0),
+        with("180 rpm", &|s| s.operation.rotation_speed_rpm = 180.0),
+        with("40 rpm, static friction 0.5", &|s| {
             s.operation.rotation_speed_rpm = 40.0;
             (s.contact.static_friction, s.contact.dynamic_friction) = (0.5, 0.1);
         }),
-        scene("weight on bit 150 kN", &|s| s.operation.weight_on_bit *= 1.5),
-        scene("damping 1e-4 s", &|s| s.damping.stiffness_proportional = 1e-4),
-        scene("unbalance x 30", &|s| unbalance(s, 30.0)),
-        scene("dry", &|s| s.mud = None),
-        scene("dry, unbalance x 30", &|s| {
+        with("weight on bit 150 kN", &|s| s.operation.weight_on_bit *= 1.5),
+        with("damping 1e-4 s", &|s| s.damping.stiffness_proportional = 1e-4),
+        with("unbalance x 30", &|s| unbalance(s, 30.0)),
+        with("dry", &|s| s.mud = None),
+        with("dry, unbalance x 30", &|s| {
             s.mud = None;
             unbalance(s, 30.0);
         }),
-        scene("dry, unbalance x 100, impacts", &|s| {
+        with("dry, unbalance x 100, impacts", &|s| {
             s.mud = None;
             unbalance(s, 100.0);
         }),

@@ -8,7 +8,7 @@ use crate::force::mud::{FlowGeometry, FlowMomentum};
 use crate::string::beam::BeamSection;
 
 /// A scenario, with the decisions about its effects so far.
-pub struct Scene<'a> {
+pub struct EffectContext<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
     /// Decisions about the effects before this one in their order; later effects count as active.
@@ -17,7 +17,7 @@ pub struct Scene<'a> {
 
 /// Decision on whether a scenario needs an effect, with its reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Call {
+pub struct Decision {
     /// True if the scenario needs the effect.
     pub active: bool,
     /// Reason, in words.
@@ -25,16 +25,16 @@ pub struct Call {
 }
 
 /// The scenario needs the effect.
-pub(crate) const fn yes(reason: &'static str) -> Call {
-    Call { active: true, reason }
+pub(crate) const fn yes(reason: &'static str) -> Decision {
+    Decision { active: true, reason }
 }
 
 /// The scenario does not need the effect.
-pub(crate) const fn no(reason: &'static str) -> Call {
-    Call { active: false, reason }
+pub(crate) const fn no(reason: &'static str) -> Decision {
+    Decision { active: false, reason }
 }
 
-impl Scene<'_> {
+impl EffectContext<'_> {
     /// True if the string turns.
     pub(crate) fn turns(&self) -> bool {
         self.scenario.operation.rotation_speed_rpm != 0.0
@@ -52,13 +52,13 @@ impl Scene<'_> {
 }
 
 /// Decision about an effect of mud, at rest or in flow.
-pub(crate) fn has_mud(scene: &Scene<'_>) -> Call {
-    if scene.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
+pub(crate) fn has_mud(context: &EffectContext<'_>) -> Decision {
+    if context.scenario.mud.is_some() { yes("there is mud") } else { no("the hole is dry") }
 }
 
 /// Decision about an effect of flowing mud.
-pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
-    match &scene.scenario.mud {
+pub(crate) fn has_flow(context: &EffectContext<'_>) -> Decision {
+    match &context.scenario.mud {
         None => no("the hole is dry"),
         Some(mud) if mud.flow_rate == 0.0 => no("the mud does not flow"),
         Some(_) => yes("the mud flows"),
@@ -66,9 +66,9 @@ pub(crate) fn has_flow(scene: &Scene<'_>) -> Call {
 }
 
 /// Decision about friction at the wall.
-pub(crate) fn has_friction(scene: &Scene<'_>) -> Call {
-    let law = &scene.scenario.contact;
-    match (scene.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {
+pub(crate) fn has_friction(context: &EffectContext<'_>) -> Decision {
+    let law = &context.scenario.contact;
+    match (context.active.contact, law.static_friction == 0.0 && law.dynamic_friction == 0.0) {
         (false, _) => no("there is no contact"),
         (true, true) => no("the wall is without friction"),
         (true, false) => yes("the wall has friction"),

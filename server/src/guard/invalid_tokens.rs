@@ -27,7 +27,7 @@ const MOST_KNOWN: usize = 1_000;
 
 /// Refused tokens, by address.
 #[derive(Default)]
-pub(crate) struct Strangers {
+pub(crate) struct InvalidTokens {
     state: Mutex<State>,
     /// Tokens refused since the start.
     refused: Counter,
@@ -35,12 +35,12 @@ pub(crate) struct Strangers {
 
 #[derive(Default)]
 struct State {
-    addresses: HashMap<IpAddr, Stranger>,
+    addresses: HashMap<IpAddr, Source>,
     known: HashSet<String>,
     in_order: VecDeque<String>,
 }
 
-struct Stranger {
+struct Source {
     /// Level of the leaky bucket.
     level: f64,
     at: Instant,
@@ -49,7 +49,7 @@ struct Stranger {
     unlogged: u64,
 }
 
-impl Strangers {
+impl InvalidTokens {
     /// Counts refused tokens in `refused`.
     pub(crate) fn new(refused: Counter) -> Self {
         Self { state: Mutex::default(), refused }
@@ -94,7 +94,7 @@ impl Strangers {
         }
         state.make_room();
         let address = address(peer);
-        let stranger = state.addresses.entry(address).or_insert(Stranger {
+        let stranger = state.addresses.entry(address).or_insert(Source {
             level: 0.0,
             at: now,
             logged: None,
@@ -134,7 +134,7 @@ impl State {
     }
 }
 
-impl Stranger {
+impl Source {
     fn level(&self, now: Instant) -> f64 {
         (self.level - PER_SECOND * (now - self.at).as_secs_f64()).max(0.0)
     }
@@ -164,36 +164,36 @@ mod tests {
 
     #[test]
     fn an_address_is_refused_after_a_burst_but_for_tokens_that_were_valid() {
-        let strangers = Strangers::default();
+        let invalid_tokens = InvalidTokens::default();
         let (here, there) = (peer([192, 0, 2, 1]), peer([192, 0, 2, 2]));
-        strangers.know(&secret(1));
+        invalid_tokens.know(&secret(1));
         let mut admitted = 0;
         for guess in 100..1_100 {
-            if strangers.admit(here, Some(&secret(guess))).is_ok() {
+            if invalid_tokens.admit(here, Some(&secret(guess))).is_ok() {
                 admitted += 1;
-                strangers.refuse(here, Some(&secret(guess)));
+                invalid_tokens.refuse(here, Some(&secret(guess)));
             }
         }
         // The test may take some seconds, and the bucket leaks one in 2 s.
         assert!((20..60).contains(&admitted), "{admitted}");
-        assert_eq!(strangers.refused.get(), admitted);
-        assert!(strangers.admit(here, Some(&secret(1))).is_ok());
-        assert!(strangers.admit(there, Some(&secret(2))).is_ok());
+        assert_eq!(invalid_tokens.refused.get(), admitted);
+        assert!(invalid_tokens.admit(here, Some(&secret(1))).is_ok());
+        assert!(invalid_tokens.admit(there, Some(&secret(2))).is_ok());
         // A revoked token counts like any invalid one.
-        strangers.refuse(here, Some(&secret(1)));
-        let problem = strangers.admit(here, Some(&secret(1))).expect_err("refused").into_problem();
+        invalid_tokens.refuse(here, Some(&secret(1)));
+        let problem = invalid_tokens.admit(here, Some(&secret(1))).expect_err("refused").into_problem();
         assert_eq!(problem.status, 429);
     }
 
     #[test]
     fn memory_does_not_grow_with_addresses_and_tokens() {
-        let strangers = Strangers::default();
+        let invalid_tokens = InvalidTokens::default();
         for number in 0..3 * MOST_ADDRESSES {
             let [_, a, b, c] = (number as u32).to_be_bytes();
-            strangers.refuse(peer([10, a, b, c]), None);
+            invalid_tokens.refuse(peer([10, a, b, c]), None);
         }
-        (0..2 * MOST_KNOWN).for_each(|number| strangers.know(&secret(number)));
-        let state = strangers.state();
+        (0..2 * MOST_KNOWN).for_each(|number| invalid_tokens.know(&secret(number)));
+        let state = invalid_tokens.state();
         assert!(state.addresses.len() <= MOST_ADDRESSES);
         assert_eq!((state.known.len(), state.in_order.len()), (MOST_KNOWN, MOST_KNOWN));
     }

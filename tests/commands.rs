@@ -93,7 +93,7 @@ fn sweep_is_submitted_watched_listed_shown_and_fetched() {
     let files = json(&server, &fetch);
     let listed = files.as_array().unwrap();
     assert!(listed.iter().all(|file| std::path::Path::new(file.as_str().unwrap()).exists()));
-    assert_eq!(listed.len(), 2 + 3 * 6, "the sweep, its table, and a folder a point: {files}");
+    assert_eq!(listed.len(), 2 + 3 * 8, "the sweep, its table, and a folder a point: {files}");
     // Fetched files stay as they are; missing and empty ones are fetched.
     let (kept, lost) = (output.join("point-0001/profile.parquet"), output.join("point-0001/statics.parquet"));
     let whole = std::fs::read(&lost).unwrap();

@@ -290,7 +290,7 @@ fn storm_of_kills_loses_nothing_and_changes_no_number() {
         "the same numbers to the last digit"
     );
     for n in 1..=16 {
-        for name in ["profile", "statics", "history", "contacts", "energy"] {
+        for name in ["profile", "statics", "history", "lines", "contacts", "loads", "energy"] {
             let of = |server: &str, sweep: &str| {
                 bytes(&format!("{server}/v1/sweeps/{sweep}/points/{n}/{name}?format=parquet"))
             };
@@ -642,7 +642,7 @@ fn damaged_result_is_reported_and_computed_again() {
         assert_eq!(problem["type"], "urn:drillsweep:problem:recomputing", "{problem}");
     }
     assert_eq!(get(&format!("{address}/v1/sweeps/{sweep}"))["counts"]["queued"], 1);
-    assert_eq!(check(data.path()).1.len(), 5, "the tables of the point");
+    assert_eq!(check(data.path()).1.len(), 7, "the tables of the point");
 
     let _worker = worker(data.path());
     wait(&address, &sweep, completed);

@@ -106,7 +106,7 @@ fn events(server: &str, sweep: &str) -> Vec<Vec<u8>> {
         .map(|part| bytes(&format!("{url}{part}")))
         .into();
     for point in 1..=POINTS {
-        for table in ["profile", "statics", "contacts", "energy", "history"] {
+        for table in ["profile", "statics", "lines", "contacts", "loads", "energy", "history"] {
             told.push(bytes(&format!("{url}/points/{point}/{table}?format=parquet")));
         }
     }

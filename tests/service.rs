@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
 mod commands;
+mod diagnosis;
 mod disk;
 mod faults;
 mod hostile;
@@ -229,7 +230,7 @@ fn outputs_decide_which_tables_are_kept_and_change_no_number() {
 
     let rows = [&orbits, &spectra, &summary, &full].map(|point| get(point)["summary"].clone());
     assert!(rows.iter().all(|row| *row == rows[3]), "the same row to the last bit");
-    for table in ["profile", "statics", "contacts", "energy"] {
+    for table in ["profile", "statics", "lines", "contacts", "loads", "energy"] {
         let of = |point: &String| get(&format!("{point}/{table}"));
         assert!(of(&orbits) == of(&full) && of(&spectra) == of(&full), "{table}");
         assert_eq!(problem(&format!("{summary}/{table}"))["type"], "urn:drillsweep:problem:no-such-table");

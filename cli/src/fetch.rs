@@ -16,12 +16,13 @@ use crate::client::{Client, ServerArguments, path_segment};
 use crate::print;
 
 /// Tables of one point.
-static TABLES: [&Layout; 8] = [
+static TABLES: [&Layout; 9] = [
     &tables::PROFILE,
     &tables::STATICS,
     &tables::HISTORY,
     &tables::COURSE,
     &tables::SNAPSHOTS,
+    &tables::LINES,
     &tables::CONTACTS,
     &tables::LOADS,
     &tables::ENERGY,

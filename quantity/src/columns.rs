@@ -471,6 +471,10 @@ quantities! {
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
     /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet.
     CLASS: "class", "", -, "class";
+    /// Reason for which the class is uncertain: statistics have not settled, or the estimated error reaches across a limit.
+    CLASS_UNCERTAIN: "class_uncertain", "", -, "uncertainty of the class";
+    /// Finding about the point in words.
+    SENTENCE: "sentence", "", -, "finding";
     /// State of the point, or of its reference run.
     STATE: "state", "", -, "state";
     /// Reason of the point's failure.

@@ -5,8 +5,15 @@ use crate::{PRESETS, Problem};
 /// Jaro's similarity from which a name counts as misspelt: a letter too few or two that are swapped, a folder that is left out.
 const SIMILAR: f64 = 0.7;
 
+/// Bytes of a name from which it resembles none.
+const LONGEST: usize = 256;
+
 /// The most similar of some names, if it is likely meant.
 pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // The comparison is quadratic, and no name is as long.
+    if name.len() > LONGEST {
+        return None;
+    }
     let name = name.to_lowercase();
     names
         .into_iter()

@@ -69,9 +69,10 @@ impl Footprint {
         let snapshots = PlannedSnapshots::of(model);
         let is_refined = model.effects.transient && model.elements.len() <= MOST_ELEMENTS;
         let of_finer_meshes = if is_refined { PER_NODE_OF_FINER_MESHES } else { 0 };
+        // As they are and encoded in a checkpoint.
+        let of_loads = if model.effects.transient { 2 * LOAD_BYTES } else { 0 };
         Self {
-            // Loads take memory twice: as they are and encoded in a checkpoint.
-            memory_bytes: (PER_NODE + of_finer_meshes + 2 * LOAD_BYTES) * model.node_count() as u64
+            memory_bytes: (PER_NODE + of_finer_meshes + of_loads) * model.node_count() as u64
                 + recorded.memory().max(snapshots.memory_of_table())
                 + snapshots.memory_of_blocks()
                 + study,

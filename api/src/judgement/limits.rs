@@ -127,6 +127,11 @@ impl OperatingLimits {
         Ok(limits)
     }
 
+    /// The same limits times a factor.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self(self.0.iter().map(|(column, limit)| (column.clone(), factor * limit)).collect())
+    }
+
     /// Limit of a column; absent if it has none.
     pub(super) fn of(&self, quantity: &Quantity) -> Option<f64> {
         self.0.get(quantity.name).copied()

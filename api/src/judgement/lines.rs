@@ -16,8 +16,8 @@ const SUM_OF_TORSION: i32 = 3;
 /// Part of a frequency within which two frequencies count as one, next to the resolution of the window: contacts that lift off shift modes by as much.
 const SAME: f64 = 0.01;
 
-/// Resolution of a window with Hann's weights in bins.
-const BINS: f64 = 1.5;
+/// Uncertainty of an interpolated line's frequency in bins of its window.
+const BINS: f64 = 0.5;
 
 /// Amplitude of the bit's swing, relative to the rotation speed, from which torsion explains lines.
 const SWINGS: f64 = 0.01;
@@ -349,8 +349,8 @@ mod tests {
     fn rotation_is_told_from_torsion_by_the_resolution_of_the_window() {
         assert_eq!(cause(2.01).sentence, "+2.01 Hz: the rotation at 2.000 Hz");
         assert_eq!(cause(-4.0).sentence, "-4.00 Hz: 2 times the rotation at 2.000 Hz, backward");
-        // In a window of 4 s both lie within the resolution, and torsion comes first.
-        let short = Line { window: [56.0, 60.0], ..line(2.01) };
+        // In a window of 2 s both lie within the resolution, and torsion comes first.
+        let short = Line { window: [58.0, 60.0], ..line(2.01) };
         assert_eq!(line_causes(&[short], &motion())[0].cause.as_ref().unwrap().kind, CauseKind::Torsion);
     }
 
@@ -369,7 +369,7 @@ mod tests {
             "+0.16 Hz: -1 times the rotation and +1 times the torsion, +0.158 Hz"
         );
         assert_eq!(
-            cause(3.405).sentence,
+            cause(3.407).sentence,
             "+3.41 Hz: the lateral mode at 3.410 Hz (-0.100 1/s), largest at 191.0 m"
         );
         let none = cause(5.3);

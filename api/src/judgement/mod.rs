@@ -4,6 +4,7 @@
 
 mod limits;
 mod lines;
+mod window;
 
 use drillsweep_quantity::columns::*;
 use drillsweep_quantity::units::{self, Unit};
@@ -14,6 +15,7 @@ use serde_json::{Map, Value};
 
 pub use limits::{LimitError, LimitSource, OperatingLimits, limit_sources};
 pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes};
+pub use window::OperatingWindow;
 
 /// Class of a point, the most severe first.
 #[derive(
@@ -352,7 +354,7 @@ mod tests {
 
     use super::*;
 
-    fn judged(row: Value, limits: &str) -> Judgement {
+    fn judged(row: &Value, limits: &str) -> Judgement {
         let limits = OperatingLimits::parse(limits).unwrap();
         Judgement::of_row(row.as_object().unwrap(), &limits)
     }
@@ -363,15 +365,15 @@ mod tests {
             "motion_regime": "irregular", "bit_stick_slip_severity": 1.09, "bit_speed_min": -0.42, "bit_speed_mean": 12.566, "bit_speed_max": 26.9,
             "bit_stick_fraction": 0.25, "bit_line_frequency_hz": 2.0, "largest_lateral_acceleration_rms": 0.7,
         });
-        let judgement = judged(row.clone(), "");
+        let judgement = judged(&row, "");
         assert_eq!(judgement.class, MotionClass::StickSlip);
         assert_eq!(
             judgement.sentence,
             "Stick-slip at 2.00 Hz: the bit turns between -4.0 and 256.9 rpm, severity 1.09, and stops for 0.12 s of every 0.50 s"
         );
         assert_eq!(judgement.findings[0].evidence["bit_speed_min"], json!(-0.42));
-        assert_eq!(judged(row.clone(), "bit_stick_slip_severity:1.2").class, MotionClass::Quiet);
-        assert_eq!(judged(row, "bit_stick_slip_severity:off").class, MotionClass::Quiet);
+        assert_eq!(judged(&row, "bit_stick_slip_severity:1.2").class, MotionClass::Quiet);
+        assert_eq!(judged(&row, "bit_stick_slip_severity:off").class, MotionClass::Quiet);
     }
 
     #[test]
@@ -379,8 +381,8 @@ mod tests {
         let row = json!({
             "motion_regime": "regular", "bit_stick_slip_severity": 0.2, "largest_side_force": 12e3, "largest_side_force_depth": 165.04,
         });
-        assert_eq!(judged(row.clone(), "").class, MotionClass::Quiet);
-        let judgement = judged(row, "largest_side_force:8000");
+        assert_eq!(judged(&row, "").class, MotionClass::Quiet);
+        let judgement = judged(&row, "largest_side_force:8000");
         assert_eq!(judgement.class, MotionClass::OverLimit);
         assert_eq!(
             judgement.sentence,
@@ -396,7 +398,7 @@ mod tests {
             "fastest_whirl_depth": 187.0, "bit_speed_mean": 12.0, "largest_shock_rate_10g": 0.5, "largest_shock_rate_10g_depth": 150.0,
             "largest_lateral_acceleration": 200.0, "stable": false, "instability": "buckling", "instability_growth_rate": 0.5,
         });
-        let judgement = judged(row, "");
+        let judgement = judged(&row, "");
         let classes: Vec<_> = judgement.findings.iter().map(|finding| finding.class).collect();
         assert!(classes.is_sorted(), "{classes:?}");
         assert_eq!(

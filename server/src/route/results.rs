@@ -122,6 +122,26 @@ pub(crate) async fn statics(
     whole_table(&tables::STATICS, app, path, query, headers).await
 }
 
+/// Strongest spectral lines of the recorded nodes
+///
+/// A row a line, the strongest first, for each node and spectrum window in turn, with Hann's weights; `GET .../diagnosis` names their causes.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/lines",
+    tag = "points",
+    operation_id = "get_lines",
+    params(PointPath, TableQuery, Conditional),
+    responses(TableResponse, Problems)
+)]
+pub(crate) async fn lines(
+    app: State<App>,
+    path: Path<PointPath>,
+    query: Query<TableQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    whole_table(&tables::LINES, app, path, query, headers).await
+}
+
 /// Contacts of every node with the hole over the run
 #[utoipa::path(
     get,

@@ -58,8 +58,7 @@ impl Verified {
         .await
     }
 
-    /// Adds the points of the sweep, with biases of verified ones, to `table`, which may keep only some columns. Pages are read one after
-    /// the other, each in its present state. Blocks.
+    /// Adds the points of the sweep, with biases of verified ones, to `table`, which may keep only some columns. Blocks.
     pub(crate) fn points(
         &self,
         mut table: PointsTable,
@@ -67,6 +66,18 @@ impl Verified {
         id: &str,
         runtime: &Handle,
     ) -> Result<PointsTable> {
+        self.each_point(store, id, runtime, |point| table.push(point))?;
+        Ok(table)
+    }
+
+    /// Visits the points of the sweep, with biases of verified ones. Pages are read one after the other, each in its present state. Blocks.
+    pub(crate) fn each_point(
+        &self,
+        store: &Store,
+        id: &str,
+        runtime: &Handle,
+        mut visit: impl FnMut(PointSummary) -> serde_json::Result<()>,
+    ) -> Result<()> {
         let by_ordinal: HashMap<i64, &VerifiedPoint> =
             self.points.iter().map(|point| (point.ordinal.into(), point)).collect();
         let read = |after| {
@@ -82,14 +93,14 @@ impl Verified {
             for record in &mut page {
                 let biases = by_ordinal.get(&record.ordinal).map(|point| point.biases()).unwrap_or_default();
                 let point = PointSummary { biases, ..records::point_summary(record)? };
-                table.push(point).map_err(|error| Error::internal(&error))?;
+                visit(point).map_err(|error| Error::internal(&error))?;
             }
         }
         // If the sweep was deleted between two pages, the points so far are not its table.
         if runtime.block_on(store.sweep_version(id))?.is_none() {
             return Err(records::no_such_sweep(id));
         }
-        Ok(table)
+        Ok(())
     }
 
     /// Table of the verified points.

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from drillsweep.table import Table
+from drillsweep.values import limits_text
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
@@ -273,6 +274,10 @@ class Point:
         query = {"node": node, "max_frames": max_frames, "fields": names}
         return self.view("snapshots", **{"from": time[0], "to": time[1]}, **query)
 
+    def lines(self) -> Table:
+        """Strongest spectral lines of the recorded nodes; `diagnosis` names their causes."""
+        return self.view("lines")
+
     def contacts(self) -> Table:
         """Contacts of every node with the hole over the run."""
         return self.view("contacts")
@@ -291,9 +296,7 @@ class Point:
 
     def diagnosis(self, limits: Mapping[str, float | None] | None = None) -> dict[str, Any]:
         """Class of the motion by limits (a column's limit in its unit; None takes a default away), and causes of the spectral lines."""
-        changes = {name: "off" if limit is None else repr(float(limit)) for name, limit in (limits or {}).items()}
-        text = ",".join(f"{name}:{limit}" for name, limit in changes.items())
-        return self._client.get_json(f"{self.path}/diagnosis", {"limits": text or None})
+        return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
 
     def cost(self) -> dict[str, Any]:
         """Cost of accuracy, if the scenario has a `cost_study`."""

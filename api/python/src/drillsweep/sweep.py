@@ -20,7 +20,7 @@ from drillsweep.point import Point, PointState
 from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
 from drillsweep.progress import ProgressBar, is_interactive
 from drillsweep.table import Table
-from drillsweep.values import texts, to_json
+from drillsweep.values import limits_text, texts, to_json
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
@@ -264,6 +264,10 @@ class Sweep:
     def table(self) -> Table:
         """One row a point: its parameters and the scalars of its result."""
         return Table.from_json(self._client.get_json(f"{self.path}/table"))
+
+    def window(self, limits: Mapping[str, float | None] | None = None) -> Table:
+        """Operating window: parameters, class by limits (in the columns' units; None takes a default away) and finding of each point."""
+        return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
 
     def verification(self) -> Table:
         """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).

@@ -59,3 +59,9 @@ def texts(values: Iterable[str], pointer: str) -> list[str]:
     if isinstance(values, str):
         raise TypeError(f"{pointer}: must be a list of texts (got {values!r})")
     return list(values)
+
+
+def limits_text(limits: Mapping[str, float | None] | None) -> str | None:
+    """Limits as a request has them; None if there are none."""
+    changes = {name: "off" if limit is None else repr(float(limit)) for name, limit in (limits or {}).items()}
+    return ",".join(f"{name}:{limit}" for name, limit in changes.items()) or None

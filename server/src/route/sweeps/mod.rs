@@ -7,6 +7,7 @@ pub(crate) mod list;
 pub(crate) mod show;
 pub(crate) mod submit;
 pub(crate) mod table;
+pub(crate) mod window;
 
 use std::time::Duration;
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Moment;
+use super::moment::Moment;
 use super::statistics::{Peak, RmsAndPeak, Span, Sums};
 use crate::math::dof::{DOFS, Dofs};
 use crate::math::linalg::{Four, Lane, after};

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod elements;
+mod moment;
 mod nodes;
 mod statistics;
 #[cfg(test)]
@@ -19,6 +20,7 @@ use drillsweep_scenario::TimeWindow;
 pub(super) use blocks::LoadBlocks;
 use blocks::{LoadBlock, LoadWindow};
 use elements::{Elements, element_loads};
+pub(super) use moment::Moment;
 use nodes::{Nodes, node_loads};
 
 pub use blocks::LOAD_BYTES;
@@ -26,9 +28,7 @@ pub use elements::ElementLoads;
 pub use nodes::{NodeLoads, SHOCKS_G};
 pub use statistics::{Peak, RmsAndPeak, Span};
 
-use crate::force::wall::ContactForces;
 use crate::math::dof::Dofs;
-use crate::math::linalg::{Four, NodalField};
 use crate::solve::model::{Model, NodalVector};
 use crate::solve::statics::Equilibrium;
 
@@ -41,20 +41,6 @@ pub struct LoadRecords {
     pub nodes: Vec<NodeLoads>,
     /// Loads of every element, from the top; empty if no step ended in the window.
     pub elements: Vec<ElementLoads>,
-}
-
-/// Motion and contact forces at the end of a step.
-pub(super) struct Moment<'a, const D: usize> {
-    /// Time \[s\].
-    pub(super) time: f64,
-    /// Angle of the top \[rad\].
-    pub(super) angle: f64,
-    pub(super) displacement: &'a NodalField<D>,
-    pub(super) velocity: &'a NodalField<D>,
-    pub(super) acceleration: &'a NodalField<D>,
-    pub(super) wall: &'a ContactForces,
-    /// Largest normal forces of nodes within the step \[N\], four side by side; empty if they are those of its ends.
-    pub(super) peaks: &'a [Four],
 }
 
 /// Observer of the loads of a run that solves for D degrees of freedom a node.

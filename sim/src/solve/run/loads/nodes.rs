@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Moment;
+use super::moment::Moment;
 use super::statistics::{Peak, RmsAndPeak, Span, Sums, indicator};
 use crate::force::term::gravity;
 use crate::force::wall::NodesAtWall;

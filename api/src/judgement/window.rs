@@ -1,0 +1,163 @@
+//! Operating window of a sweep: the classes of its points over its parameters.
+
+use drillsweep_quantity::columns::*;
+use drillsweep_table::{Column, Table};
+use indexmap::IndexMap;
+use serde_json::{Map, Value};
+
+use super::{Judgement, MotionClass, OperatingLimits};
+use crate::view::points::PointSummary;
+
+/// Operating window as it is put together point by point: a row a point with its parameters, its class by limits, whether the class is uncertain, and
+/// its finding in words. Points without a result have no class.
+#[derive(Debug)]
+pub struct OperatingWindow {
+    limits: OperatingLimits,
+    ordinals: Vec<Option<i64>>,
+    parameters: IndexMap<String, Vec<f64>>,
+    classes: Vec<Option<MotionClass>>,
+    uncertain: Vec<Option<String>>,
+    sentences: Vec<Option<String>>,
+}
+
+impl OperatingWindow {
+    /// Empty window by limits.
+    pub fn new(limits: OperatingLimits) -> Self {
+        Self {
+            limits,
+            ordinals: Vec::new(),
+            parameters: IndexMap::new(),
+            classes: Vec::new(),
+            uncertain: Vec::new(),
+            sentences: Vec::new(),
+        }
+    }
+
+    /// Adds a point.
+    ///
+    /// # Errors
+    /// Its summary is no JSON object.
+    pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
+        let row = self.ordinals.len();
+        self.ordinals.push(Some(point.ordinal.into()));
+        for (name, value) in point.parameters {
+            let values = self.parameters.entry(name).or_default();
+            values.resize(row, f64::NAN);
+            values.push(value);
+        }
+        let (judgement, uncertain) = match (&point.error, &point.summary) {
+            (Some(error), _) => (Some(Judgement::of_failure(&error.reason, &self.limits)), None),
+            (None, Some(summary)) => {
+                let row: Map<String, Value> = serde_json::from_str(summary)?;
+                let judgement = Judgement::of_row(&row, &self.limits);
+                let uncertain = uncertainty(&row, &judgement);
+                (Some(judgement), uncertain)
+            }
+            (None, None) => (None, None),
+        };
+        self.classes.push(judgement.as_ref().map(|judgement| judgement.class));
+        self.sentences.push(judgement.map(|judgement| judgement.sentence));
+        self.uncertain.push(uncertain);
+        Ok(())
+    }
+
+    /// The names of the parameters so far.
+    pub fn parameters(&self) -> impl Iterator<Item = &str> {
+        self.parameters.keys().map(String::as_str)
+    }
+
+    /// Table of all rows, with the limits and the number of points of each class as attributes.
+    pub fn finish(self) -> Table {
+        let rows = self.ordinals.len();
+        let count =
+            |class: MotionClass| self.classes.iter().filter(|of_point| **of_point == Some(class)).count();
+        let counts: Map<String, Value> = MotionClass::ALL
+            .into_iter()
+            .filter(|class| count(*class) > 0)
+            .map(|class| (class.name().to_owned(), count(class).into()))
+            .collect();
+        let mut table = Table::default()
+            .attribute("limits", serde_json::json!(self.limits))
+            .attribute("points_by_class", Value::Object(counts))
+            .with(&ORDINAL, Column::Integer(self.ordinals));
+        for (name, mut values) in self.parameters {
+            values.resize(rows, f64::NAN);
+            table.push(name, Column::Number(values));
+        }
+        let classes = self.classes.into_iter().map(|class| class.map(|class| class.name().to_owned()));
+        table
+            .with(&CLASS, Column::Text(classes.collect()))
+            .with(&CLASS_UNCERTAIN, Column::Text(self.uncertain))
+            .with(&SENTENCE, Column::Text(self.sentences))
+    }
+}
+
+/// Reason for which the class of a point is uncertain: its statistics have not settled, or its estimated error reaches across a limit; absent otherwise.
+fn uncertainty(row: &Map<String, Value>, judgement: &Judgement) -> Option<String> {
+    let text = |quantity: &str| row.get(quantity)?.as_str();
+    let number = |quantity: &str| row.get(quantity)?.as_f64();
+    if text(MOTION_REGIME.name) == Some("not_settled") {
+        return Some("not settled".to_owned());
+    }
+    let (kind, error) = number(WHOLE_ERROR.name)
+        .map(|error| ("estimated", error))
+        .or_else(|| number(PROMISED_ERROR.name).map(|error| ("promised", error)))?;
+    let other = [1.0 + error, 1.0 / (1.0 + error)]
+        .map(|factor| Judgement::of_row(row, &judgement.limits.scaled(factor)).class)
+        .into_iter()
+        .find(|class| *class != judgement.class)?;
+    Some(format!("{} within the {kind} error of {:.1} %", other.name(), 1e2 * error))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::PointState;
+
+    fn point(ordinal: u32, severity: Option<f64>, error: f64) -> PointSummary {
+        let summary = severity.map(|severity| {
+            json!({ "motion_regime": "regular", "bit_stick_slip_severity": severity, "whole_error": error }).to_string()
+        });
+        PointSummary {
+            ordinal,
+            state: PointState::Succeeded,
+            parameters: IndexMap::from([("mud.density".to_owned(), 1200.0)]),
+            summary,
+            biases: IndexMap::new(),
+            error: None,
+        }
+    }
+
+    #[test]
+    fn classes_near_a_limit_are_uncertain_by_the_estimated_error() {
+        let mut window = OperatingWindow::new(OperatingLimits::default());
+        for (ordinal, severity, error) in [
+            (1, Some(0.5), 0.02),
+            (2, Some(0.99), 0.02),
+            (3, Some(1.01), 0.02),
+            (4, Some(1.1), 0.02),
+            (5, None, 0.0),
+        ] {
+            window.push(point(ordinal, severity, error)).unwrap();
+        }
+        let table = window.finish();
+        let texts = |quantity: &str| match &table.columns[quantity] {
+            Column::Text(texts) => {
+                texts.iter().map(|text| text.as_deref().unwrap_or("-").to_owned()).collect::<Vec<_>>()
+            }
+            _ => panic!("no texts"),
+        };
+        assert_eq!(texts("class"), ["quiet", "quiet", "stick_slip", "stick_slip", "-"]);
+        let near = [
+            "-",
+            "stick_slip within the estimated error of 2.0 %",
+            "quiet within the estimated error of 2.0 %",
+            "-",
+            "-",
+        ];
+        assert_eq!(texts("class_uncertain"), near);
+        assert_eq!(table.attributes["points_by_class"], json!({ "stick_slip": 2, "quiet": 2 }));
+    }
+}

@@ -1,0 +1,78 @@
+//! Operating window of a sweep.
+
+use ::drillsweep_chart as chart;
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::judgement::{OperatingLimits, OperatingWindow};
+use drillsweep_quantity::columns::CLASS;
+use serde::Deserialize;
+use tokio::runtime::Handle;
+
+use crate::answer::error::Result;
+use crate::answer::etag::Tag;
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::records;
+use crate::app::App;
+use crate::openapi::answers::{Conditional, PictureResponse, Problems};
+use crate::route::verification::{Verified, memory_of_points};
+
+/// Query of an operating window.
+#[derive(Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct WindowQuery {
+    /// Format of the table, or of its picture; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<PictureFormat>,
+    /// Changes of the default limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    #[serde(default, deserialize_with = "value::limits")]
+    #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
+    limits: OperatingLimits,
+    /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas.
+    #[serde(default, deserialize_with = "value::assignments")]
+    #[param(value_type = Option<String>)]
+    slice: Option<Vec<(String, f64)>>,
+}
+
+/// Operating window: the class of each point over the parameters of the sweep
+///
+/// A row a point: `ordinal`, parameters, `class`, `class_uncertain` with the reason if the statistics have not settled or the estimated error
+/// reaches across a limit, and the finding in words. Limits apply without a new run. The attributes hold the limits and the number of points of
+/// each class. A picture is the map of the classes.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/window",
+    tag = "sweeps",
+    operation_id = "get_window",
+    params(("id" = String, Path, description = "Identifier of the sweep"), WindowQuery, Conditional),
+    responses(PictureResponse, Problems)
+)]
+pub(crate) async fn window(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Query(WindowQuery { format, limits, slice }): Query<WindowQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let format = Format::choose(format, &headers)?;
+    let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    let slice = slice.unwrap_or_default();
+    let key = Tag::of(format, &("window", &id, sweep.version, &sweep.name, &limits, &slice));
+    let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let verified = Verified::load(&app.store, &id).await?;
+    let (runtime, store) = (Handle::current(), app.store.clone());
+    app.answer(format, key.as_str(), memory, move || {
+        let mut window = OperatingWindow::new(limits);
+        verified.each_point(&store, &id, &runtime, |point| window.push(point))?;
+        let parameters = window.parameters().map(str::to_owned).collect();
+        let table = window.finish();
+        let fields = format.is_picture().then(|| vec![CLASS.name.to_owned()]);
+        let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
+        let view = chart::SweepView { slice, ..Default::default() };
+        Answer::of_table_or_picture(table, fields, format, &format!("window-{id}"), None, |table| {
+            chart::sweep(table, &parameters, fields, &verified.findings, title, &view)
+        })
+    })
+    .await
+}

@@ -285,7 +285,7 @@ class ShownComparison {
 
   /** Writes the caption, and the data that points lack. @param {Comparison} comparison */
   #describe({ lacking, says, nodes }) {
-    const { view, depth } = this.#choices;
+    const { view, depth, isWindowed, windowNote } = this.#choices;
     fill(
       this.#lacking,
       lacking.map((sentence) => h("p", {}, sentence)),
@@ -294,6 +294,7 @@ class ShownComparison {
     fill(
       this.#caption,
       view === "orbit" && "Looking downhole, the low side down. ",
+      isWindowed && windowNote && `${windowNote} `,
       says.map((sentence) => `${sentence} `),
       shownNodes.length > 0 &&
         `The recorded node of each point that is nearest to ${say("measured_depth", depth)}: ${shownNodes.join("; ")}.`,

@@ -211,6 +211,22 @@ def test_compared_statistics_carry_the_bias_of_the_window_that_was_verified(open
     expect(row).not_to_contain_text("bias")
 
 
+def test_points_are_compared_in_the_window_of_their_statistics(opened: Opens, named: Sweep, client: Client) -> None:
+    size = "orbit_radius_rms_49"
+    table = named.table()
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=statistics&depth=57.73")
+    assert cells(page, "Statistics", "Orbit size (rms about the mean)") == [
+        f"{float(f'{1e3 * value:.4g}'):g} mm" for value in list(table[size])[:2]
+    ]
+    other = {**SHORT, "recording.orbit_window": {"from": 0.3, "to": 0.5}}
+    apart = client.submit("paper-200m", set=other, axes={"flow_rate": [0.01]}, name="apart").wait(timeout=120.0)
+    page = opened(f"#/compare?points={key(named)},{key(apart)}&view=statistics&depth=57.73")
+    expect(page.get_by_text("point 1 0.1 to 0.5 s, point 2 0.3 to 0.5 s")).to_be_visible()
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    page.get_by_role("button", name="Whole run").click()
+    expect(page.get_by_text("of different windows")).to_have_count(0)
+
+
 def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, tmp_path: Path) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 8)}&view=well")
     assert [name[0] for name in names(page, "Well")] == ["1", "2"]
@@ -240,7 +256,7 @@ def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Open
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
     picture = drawn(page, "Full spectra")
     names = picture.evaluate("place => place.layout.annotations.map(({ text }) => text)")
-    own = [named.point(number).spectrum(node=49, time=(0.5 / 3, 0.5), window="hann", range_hz=100) for number in (1, 2)]
+    own = [named.point(number).spectrum(node=49, time=(0.1, 0.5), window="hann", range_hz=100) for number in (1, 2)]
     lines = [
         f"{number}: {'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
         for number, table in enumerate(own, 1)
@@ -388,12 +404,12 @@ def test_snapshots_are_compared_side_by_side(
     expect(caption).to_contain_text("From the recorded histories.")
     for speed, sweep in zip(picture.evaluate(speeds), (elsewhere, named), strict=True):
         bit = int(sweep.point(1).statics()["node"][-1])
-        history = sweep.point(1).history(node=bit, time=(0.5 / 3, 0.5))
+        history = sweep.point(1).history(node=bit, time=(0.1, 0.5))
         np.testing.assert_allclose(speed, history[f"rotation_speed_{bit}"], rtol=1e-6)
     page.get_by_label("End of the string").select_option("top")
     expect(missing).to_contain_text("Point 2 is missing: Rotation speed and torque at the top")
     expect(caption).to_contain_text("From the snapshots.")
-    top = elsewhere.point(1).snapshots(node=1, time=(0.5 / 3, 0.5))
+    top = elsewhere.point(1).snapshots(node=1, time=(0.1, 0.5))
     torque = picture.evaluate("place => [...place.data.find(({ yaxis }) => yaxis === 'y2').y]")
     np.testing.assert_allclose(torque, top["torque"] / 1e3, rtol=1e-6)
 
@@ -405,7 +421,7 @@ def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> 
         for number in (1, 2)
     ]
     assert scales[0] == scales[1]
-    own = [named.point(number).spectrogram(node=49, range_hz=50, time=(0.5 / 3, 0.5)) for number in (1, 2)]
+    own = [named.point(number).spectrogram(node=49, range_hz=50, time=(0.1, 0.5)) for number in (1, 2)]
     most = max(
         float(table["amplitude"][abs(table["frequency"]) >= 2.5 * table.attributes["resolution"]].max())
         for table in own
@@ -568,7 +584,7 @@ def test_the_lines_of_a_comparison_follow_what_is_chosen(opened: Opens, named: S
     page.get_by_label("From [s]").fill("")
     page.get_by_label("From [s]").blur()
     until(page, lambda: "from=" not in page.url)
-    expect(page.get_by_label("From [s]")).to_have_value("0.167")
+    expect(page.get_by_label("From [s]")).to_have_value("0.1")
 
 
 def test_the_whole_hole_is_shown_where_it_is_chosen(opened: Opens, named: Sweep) -> None:

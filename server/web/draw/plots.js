@@ -205,7 +205,7 @@ function keyOf(place) {
  * @param {AbortSignal} signal
  * @returns {Promise<void>}
  */
-function laidOut(place, signal) {
+export function laidOut(place, signal) {
   return new Promise((resolve) => {
     const look = () =>
       signal.aborted || (place.isConnected && place.clientWidth > 0)

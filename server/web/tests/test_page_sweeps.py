@@ -687,6 +687,44 @@ def sweep_values(service: Service, sweep: Sweep, name: str) -> list[float]:
         return list(client.sweep(sweep.id).table()[name])
 
 
+def test_a_map_ends_at_its_samples_and_marks_them(opened: Opens, named: Sweep) -> None:
+    colour = "orbit_radius_rms_49"
+    page = opened(f"#/sweeps/{named.id}?view=map&colour={colour}&at.operation.rotation_speed_rpm=90")
+    picture = drawn(page, "over flow rate")
+    read = "place => place.data.map(({ type, x, y, text, customdata }) => ({ type, x, y, text, customdata }))"
+    table = named.table().to_pandas()
+    table = table[table["operation.rotation_speed_rpm"] == 90]
+    cells, samples, ringed = picture.evaluate(read)[:3]
+    assert [cells["x"][0], cells["x"][-1], cells["y"][0], cells["y"][-1]] == pytest.approx([0.01, 0.04, 1200, 1800])
+    assert sorted(zip(samples["x"], samples["y"], strict=True)) == [
+        (0.01, 1200),
+        (0.01, 1800),
+        (0.04, 1200),
+        (0.04, 1800),
+    ]
+    values = table.set_index("ordinal")[colour]
+    texts = [float(text.replace("<br>", "")) for text in samples["text"]]
+    printed = dict(zip(samples["customdata"], texts, strict=True))
+    assert printed == {ordinal: pytest.approx(1e3 * value, rel=6e-3) for ordinal, value in values.items()}
+    least, largest = values.idxmin(), values.idxmax()
+    assert ringed["customdata"] == [least, largest]
+    caption = page.get_by_role("region", name="Map").locator("figcaption")
+    expect(caption).to_contain_text(re.compile(f"Ringed: least .* mm at point {least}, largest .* at point {largest}"))
+    expect(caption).to_contain_text("Each cell has the colour of the sample in it")
+    page.get_by_label("Drawn as").select_option("contour")
+    expect(caption).to_contain_text("colours and lines between them are interpolated")
+    # A sample is opened by a click on its dot, that of the rim too.
+    box = picture.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    spare = 0.03 / 1.06
+    page.mouse.move(box["x"] + (1 - spare) * box["width"] + 1, box["y"] + spare * box["height"] - 1, steps=3)
+    expect(picture.locator(".hoverlayer .hovertext")).to_be_visible()
+    page.mouse.down()
+    page.mouse.up()
+    corner = table[(table["flow_rate"] == 0.04) & (table["mud_density"] == 1800)]["ordinal"].iloc[0]
+    page.wait_for_url(f"**/sweeps/{named.id}/points/{corner}*")
+
+
 def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=contact_count&at.operation.rotation_speed_rpm=90")
     picture = drawn(page, "over flow rate")

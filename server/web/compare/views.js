@@ -1,7 +1,7 @@
 // Views of a comparison, by their names in the link.
 
 import { spectrumRange } from "../data/motion-requests.js";
-import { label, say, shown, title, unit } from "../data/units.js";
+import { label, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
   orbitLayout,
@@ -11,7 +11,7 @@ import {
   spectrumTrace,
 } from "../draw/orbit.js";
 import { draw, inks } from "../draw/plots.js";
-import { ACCOUNTS, ledger } from "../point/energy.js";
+import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
@@ -355,13 +355,16 @@ async function drawEnergy(place, comparison) {
     ledger((await comparison.table(point, "energy")).columns),
   );
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
-  const { symbol } = unit("kinetic");
+  const { symbol, size } = suitedUnit(
+    "kinetic",
+    found.flatMap(([, one]) => one.accounts.map(one.change)),
+  );
   const traces = found.map(([point, one]) => ({
     type: "bar",
     name: point.name,
     showlegend: true,
     x: accounts.map(label),
-    y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)),
+    y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
     marker: { color: point.colour },
     hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>`,
   }));
@@ -372,7 +375,7 @@ async function drawEnergy(place, comparison) {
       shows: "",
       barmode: "group",
       xaxis: { title: "" },
-      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" },
+      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic", size },
     },
     comparison.signal,
   );
@@ -383,15 +386,22 @@ async function drawAccount(place, comparison, account) {
   const found = await each(comparison, async (point) => {
     const { columns } = await comparison.table(point, "energy");
     if (!columns[account]) throw new Lacking(`its ledger has no account of ${label(account)}`);
-    return { ...overTime(point, columns.time, shown(account, columns[account])), type: "scatter" };
+    return { point, time: columns.time, values: columns[account] };
   });
+  const { symbol, size } = suitedUnit(
+    account,
+    found.flatMap(([, { values }]) => values),
+  );
   return draw(
     place,
-    found.map(([, trace]) => trace),
+    found.map(([, { point, time, values }]) => ({
+      ...overTime(point, time, scaled(values, size)),
+      type: "scatter",
+    })),
     {
       shows: account,
       xaxis: { title: "time [s]" },
-      yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account },
+      yaxis: { title: `${label(account)} [${symbol}]`, quantity: account, size },
     },
     comparison.signal,
   );

@@ -76,6 +76,33 @@ export function unit(name) {
   return { symbol: written(preferred?.unit ?? entry.unit), size: preferred?.size ?? 1 };
 }
 
+/** Units that have prefixes, each for a thousand. */
+const PREFIXED = /^([kMG]?)((?:N|J|W|Pa)(?:·m)?)$/;
+const PREFIXES = ["", "k", "M", "G"];
+/** Least number that a larger unit shortens. */
+const LARGE = 1e4;
+
+/**
+ * Unit of a name in which the largest of some values is a short number, such as MJ of many J.
+ * @param {string} name
+ * @param {(number | null)[]} values as they are served
+ * @returns {{symbol: string, size: number}}
+ */
+export function suitedUnit(name, values) {
+  const { symbol, size } = unit(name);
+  const found = PREFIXED.exec(symbol);
+  const largest = values.reduce(
+    (/** @type {number} */ most, value) => Math.max(most, Math.abs(value ?? 0)),
+    0,
+  );
+  if (!found || largest / size < LARGE) return { symbol, size };
+  let step = PREFIXES.indexOf(found[1]);
+  let factor = 1;
+  while (largest / (size * factor) >= 1000 && step < PREFIXES.length - 1)
+    [step, factor] = [step + 1, factor * 1000];
+  return { symbol: PREFIXES[step] + found[2], size: size * factor };
+}
+
 /**
  * @param {string} name
  * @returns {string} the label with its unit in brackets, for an axis
@@ -113,10 +140,11 @@ export function say(name, value, digits = 4) {
  * @returns {(value: unknown) => string}
  */
 export function sayer(name, digits = 4) {
-  const { symbol, size } = unit(name);
+  const usual = unit(name);
   return (value) => {
     if (value === null || value === undefined) return "–";
     if (typeof value !== "number") return String(value).replaceAll("_", " ");
+    const { symbol, size } = Math.abs(value) < LARGE * usual.size ? usual : suitedUnit(name, [value]);
     const text = number(value / size, digits);
     return symbol ? `${text} ${symbol}` : text;
   };
@@ -133,16 +161,29 @@ export function sayParameters(values) {
     .join(", ");
 }
 
+/** Between thousands: a narrow space at which no line breaks. */
+export const THOUSANDS = "\u202f";
+/** Numbers from here on are written by powers of ten. */
+const HUGE = 1e9;
+
 /**
- * A number in a few significant digits.
+ * A number in a few significant digits; those of five digits and more before the point have their thousands apart.
  * @param {number} value
  * @param {number} [digits]
  */
 export function number(value, digits = 4) {
-  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(digits - 1).replace("e+", "e");
-  return String(Number(value.toPrecision(digits)));
+  if (Number.isInteger(value) && size < 1e6) return grouped(String(value));
+  if (size !== 0 && (size < 1e-3 || size >= HUGE)) return value.toExponential(digits - 1).replace("e+", "e");
+  return grouped(String(Number(value.toPrecision(digits))));
+}
+
+/** @param {string} text of a number without an exponent */
+function grouped(text) {
+  const [whole, part] = text.split(".");
+  if (whole.replace("-", "").length < 5) return text;
+  const apart = whole.replace(/\B(?=(\d{3})+$)/g, THOUSANDS);
+  return part === undefined ? apart : `${apart}.${part}`;
 }
 
 /** @param {number} seconds */

@@ -13,6 +13,9 @@ import { preferred, undelayed } from "./part.js";
 const HOW =
   "Drag along an axis, or enter a range below, to filter the points. Drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
+/** Form of the numbers at axes: no letters for powers of a thousand, since units have their own. */
+const TICKS = ",.4~r";
+
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */
 
@@ -187,6 +190,7 @@ class ParallelCoordinates {
       return {
         name,
         label: title(name),
+        tickformat: TICKS,
         constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
         values,
       };

@@ -82,8 +82,11 @@ test("numbers have a few significant digits", () => {
   const written = [
     [0, "0"],
     [-3, "-3"],
-    [999999, "999999"],
-    [1234567, "1.235e6"],
+    [9999, "9999"],
+    [999999, "999\u202f999"],
+    [1234567, "1\u202f235\u202f000"],
+    [-12345.67, "-12\u202f350"],
+    [1.234567e9, "1.235e9"],
     [12.3456, "12.35"],
     [0.012346, "0.01235"],
     [0.00012346, "1.235e-4"],
@@ -97,12 +100,25 @@ test("a number that is written keeps its value to the digits written", () => {
   for (let power = -12; power <= 12; power += 1) {
     for (const digits of [2, 3, 4, 6]) {
       near(
-        Number(units.number(1.7320508 * 10 ** power, digits)),
+        Number(units.number(1.7320508 * 10 ** power, digits).replaceAll(units.THOUSANDS, "")),
         1.7320508 * 10 ** power,
         0.5 * 10 ** (1 - digits),
       );
     }
   }
+});
+
+test("large values have the unit that makes them short", () => {
+  assert.equal(units.say("kinetic", 1.37e6), "1.37 MJ");
+  assert.equal(units.say("kinetic", 9999), "9999 J");
+  assert.equal(units.say("kinetic", -20_000), "-20 kJ");
+  assert.equal(units.say("normal_force", 8e6), "8000 kN");
+  assert.equal(units.say("normal_force", 2.4e7), "24 MN");
+  assert.equal(units.say("mud_density", 12_345.6), "12\u202f350 kg/m³");
+  assert.deepEqual(units.suitedUnit("kinetic", [3, null, -5e7]), { symbol: "MJ", size: 1e6 });
+  assert.deepEqual(units.suitedUnit("kinetic", [3]), { symbol: "J", size: 1 });
+  choose("units", "field");
+  assert.equal(units.suitedUnit("kinetic", [5e7]).symbol, "ft·lbf");
 });
 
 test("durations and sizes have the unit that suits them", () => {

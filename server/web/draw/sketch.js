@@ -54,7 +54,7 @@ export function sketch(place, traces, layout, inks) {
       bar: trace.marker?.colorbar ?? (trace.showscale === false ? undefined : trace.colorbar),
     }))
     .find((entry) => entry.bar);
-  const names = traces.filter((trace) => trace.showlegend);
+  const names = layout.showlegend === false ? [] : traces.filter((trace) => trace.showlegend);
   const frame = frameOf(pen, [...axes.values()], layout, width, height, {
     hasBar: bar !== undefined,
     hasNames: names.length > 0,

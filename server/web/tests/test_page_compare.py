@@ -328,26 +328,52 @@ def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, na
     axes = {"well.hole_diameter": [0.2159, 0.26]}
     holes = client.submit("paper-200m", set=SHORT, axes=axes, name="two holes").wait(timeout=120.0)
     page = opened(f"#/compare?points={key(holes)},{key(holes, 2)}&view=orbit&depth=57.73&zoom=hole")
-    circles = (
-        "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, line }) => [x[0], line.color])"
-    )
+    circles = "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, xaxis }) => [x[0], xaxis])"
     picture = drawn(page, "Orbits")
-    orbits = picture.evaluate(
-        "place => place.data.filter(({ showlegend }) => showlegend).map(({ line }) => line.color)"
-    )
     statics = [point.statics() for point in (holes.point(1), holes.point(2))]
     clearances = [float(table["clearance"][list(table["node"]).index(49)]) for table in statics]
     shown = picture.evaluate(circles)
     assert [radius for radius, _ in shown] == pytest.approx([1e3 * clearance for clearance in clearances])
-    assert [colour for _, colour in shown] == orbits
+    assert [panel for _, panel in shown] == ["x", "x2"]
+    # On one scale.
+    scale = "place => ['xaxis', 'xaxis2', 'yaxis', 'yaxis2'].map((name) => place._fullLayout[name])"
+    scale += ".map(({ _length, range }) => _length / (range[1] - range[0]))"
+    assert picture.evaluate(scale) == pytest.approx(4 * [picture.evaluate(scale)[0]], rel=1e-6)
     caption = page.locator("figcaption")
     for number, clearance in enumerate(clearances, 1):
         expect(caption).to_contain_text(f"point {number} {float(f'{1e3 * clearance:.4g}'):g} mm from the axis")
-    expect(caption).not_to_contain_text("grey")
-    # Points of one hole have one.
+    # One hole is said once.
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=orbit&depth=57.73")
-    assert len(drawn(page, "Orbits").evaluate(circles)) == 1
-    expect(page.locator("figcaption")).to_contain_text("On the grey circle the node touches the wall.")
+    assert len(drawn(page, "Orbits").evaluate(circles)) == 2
+    said = re.compile(r"On the grey circle the node touches the wall, \S+ mm from the axis\.")
+    expect(page.locator("figcaption")).to_contain_text(said)
+
+
+def test_points_over_time_have_a_panel_each_on_one_scale(opened: Opens, named: Sweep) -> None:
+    points = ",".join(key(named, ordinal) for ordinal in (1, 2, 3))
+    for view, picture, count in [
+        ("history", "Histories", 3),
+        ("rotation", "Rotation and torque", 3),
+        ("bit", "Rotation at bit and top", 6),
+    ]:
+        page = opened(f"#/compare?points={points}&view={view}")
+        shown = drawn(page, picture)
+        read = "place => place.data.map(({ yaxis }) => yaxis)"
+        assert shown.evaluate(read) == ["y", *(f"y{number}" for number in range(2, count + 1))]
+        spans = "place => [1, 2, 3].map((number) => place._fullLayout[`yaxis${number > 1 ? number : ''}`].range)"
+        first, *others = shown.evaluate(spans)
+        assert others == [pytest.approx(first), pytest.approx(first)]
+        headings = shown.evaluate("place => place.layout.annotations.map(({ text }) => text.split(': ')[0].at(-1))")
+        assert headings == (["1", "2", "3"] * 2)[:count]
+
+
+def test_compared_orbits_are_below_each_other_on_a_phone(opened: Opens, named: Sweep) -> None:
+    points = ",".join(key(named, ordinal) for ordinal in (1, 2, 3))
+    page = opened(f"#/compare?points={points}&view=orbit", viewport={"width": 390, "height": 844})
+    picture = drawn(page, "Orbits")
+    widths = picture.evaluate("place => ['xaxis', 'xaxis2', 'xaxis3'].map((name) => place._fullLayout[name]._length)")
+    assert min(widths) > 150
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_compared_wells_say_how_far_from_the_axis_strings_are_drawn(opened: Opens, named: Sweep) -> None:
@@ -398,7 +424,7 @@ def test_snapshots_are_compared_side_by_side(
     assert troubles == []
     page.get_by_role("link", name="Rotation at bit and top").click()
     picture = drawn(page, "Rotation at bit and top")
-    speeds = "place => place.data.filter(({ yaxis }) => yaxis === 'y').map(({ y }) => [...y])"
+    speeds = "place => place.data.filter(({ showlegend }) => showlegend).map(({ y }) => [...y])"
     # The histories of all have the bit, at the same rate.
     caption = page.locator("figcaption")
     expect(caption).to_contain_text("From the recorded histories.")

@@ -13,19 +13,21 @@ export class Choices {
    * @param {string} view its name in the link
    * @param {URLSearchParams} query of the link, which changes with the choices
    * @param {Compared[]} points
-   * @param {number[]} depths of the recorded nodes [m]
+   * @param {import("./points.js").RecordedDepths} recorded
    */
-  constructor(view, query, points, depths) {
+  constructor(view, query, points, { depths, byNode }) {
     this.view = view;
     this.query = query;
     this.points = points;
     this.depths = depths;
+    this.byNode = byNode;
   }
 
   /** Measured depth of the node [m]. */
   get depth() {
-    const { query, depths } = this;
-    const asked = Number(query.get("depth") ?? depths[Number(query.get("node") ?? 0)] ?? depths[0]);
+    const { query, depths, byNode } = this;
+    // A view of a point names its node.
+    const asked = Number(query.get("depth") ?? byNode.get(query.get("node") ?? "") ?? depths[0]);
     return Number.isFinite(asked) ? asked : depths[0];
   }
 

@@ -65,7 +65,9 @@ export async function show(main, route, signal) {
     { count: keys.length, nameOf, add: (key) => go(to([...keys, key])) },
     signal,
   );
-  const depths = VIEWS[view].isOfNode ? await recordedDepths(points, signal) : [];
+  const depths = VIEWS[view].isOfNode
+    ? await recordedDepths(points, signal)
+    : { depths: [], byNode: new Map() };
   const shown = new ShownComparison(
     new Choices(view, query, points, depths),
     (name) => to(keys, name),

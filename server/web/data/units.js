@@ -59,6 +59,16 @@ export function label(name) {
   return parts.join(", ");
 }
 
+/**
+ * Node that a column is of, as links name it.
+ * @param {string} name of a column
+ * @returns {string} such as `49` or `57.7m`; empty of a column that is of no node
+ */
+export function nodeOfColumn(name) {
+  const { node, depth } = parse(name);
+  return node ?? (depth === undefined ? "" : `${depth}m`);
+}
+
 /** @param {string} name */
 export function meaning(name) {
   return parse(name).entry?.meaning ?? "";

@@ -91,7 +91,7 @@ class SweepMap {
   constructor(context) {
     this.#context = context;
     this.#region = new FinerGrid(context);
-    this.#cursor = keyboard(this.#place, context.open);
+    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context).colour));
     this.#figure = h("figure", {}, this.#place, this.#caption, this.#cursor.element);
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
     this.#region.element.addEventListener("closed", () => {
@@ -340,7 +340,7 @@ class SweepMap {
     });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") this.#context.open(ordinal);
+      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context).colour);
     });
   }
 }

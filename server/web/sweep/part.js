@@ -15,7 +15,7 @@ import { attend } from "../ui/notices.js";
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {() => void} drawn says that what is shown is other columns than before
- * @property {(ordinal: number) => void} open
+ * @property {(ordinal: number, column?: string) => void} open a point, at the node that a column is of
  * @property {(changed: any) => void} changed takes the sweep as an answer shows it
  * @property {AbortSignal} signal
  */

@@ -5,7 +5,7 @@ import { Biases } from "../data/biases.js";
 import { Depths } from "../data/depths.js";
 import { Pace } from "../data/pace.js";
 import { SweepTable, sweptBy } from "../data/sweep-table.js";
-import { label, say } from "../data/units.js";
+import { label, nodeOfColumn, say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend, reported, notice } from "../ui/notices.js";
 import { progressPart, when } from "../ui/progress.js";
@@ -76,7 +76,8 @@ export async function show(main, route, signal) {
     },
     drawn,
     changed: (changed) => shown.update(changed),
-    open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
+    open: (ordinal, column = "") =>
+      go(link(["sweeps", id, "points", String(ordinal)], { node: nodeOfColumn(column) })),
     signal,
   };
   const part = make(context);

@@ -687,6 +687,48 @@ def sweep_values(service: Service, sweep: Sweep, name: str) -> list[float]:
         return list(client.sweep(sweep.id).table()[name])
 
 
+def test_points_are_ticked_and_compared(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&sort=orbit_radius_rms_49")
+    expect(page.get_by_role("button", name="Compare")).to_be_disabled()
+    for ordinal in (5, 2, 7):
+        page.get_by_role("checkbox", name=f"Compare point {ordinal}").check()
+    # A tick opens no point, and the link holds all of them.
+    assert "ticked=5%2C2%2C7" in page.url
+    page.get_by_role("link", name="Compare 3 points").click()
+    rows = page.get_by_role("table", name="Points compared").get_by_role("row")
+    expect(rows).to_have_count(3)
+    assert [f"point {ordinal}" in str(rows.nth(at).text_content()) for at, ordinal in enumerate((5, 2, 7))] == [
+        True
+    ] * 3
+    # At the node by which the table was sorted.
+    page.get_by_role("link", name="Statistics").click()
+    expect(page.get_by_text(re.compile("point 1 node 49 at .*; point 2 node 49 at"))).to_be_visible()
+
+
+def test_a_point_keeps_node_and_window_in_its_links(opened: Opens, named: Sweep, troubles: list[str]) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&sort=orbit_radius_rms_49")
+    page.get_by_role("link", name="2", exact=True).click()
+    page.get_by_role("link", name="Orbit, history, spectrum").click()
+    drawn(page, "Orbit of node 49")
+    page.get_by_label("From [s]").fill("0.3")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: "from=0.3" in page.url)
+    page.get_by_role("link", name="Next").click()
+    drawn(page, "Orbit of node 49")
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    page.get_by_role("link", name="Spectrogram").click()
+    drawn(page, "Spectrogram of node 49")
+    page.get_by_role("link", name="Compare", exact=True).last.click()
+    page.get_by_role("link", name="Statistics").click()
+    expect(page.get_by_text("point 1 node 49 at")).to_be_visible()
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    for view in ("motion", "spectrogram"):
+        page = opened(f"#/sweeps/{named.id}/points/1?view={view}&node=50")
+        expect(page.get_by_text("This point did not record node 50. It recorded node 10, node 49")).to_be_visible()
+    page.get_by_label("Node", exact=True).select_option("49")
+    drawn(page, "Spectrogram of node 49")
+
+
 def test_a_map_ends_at_its_samples_and_marks_them(opened: Opens, named: Sweep) -> None:
     colour = "orbit_radius_rms_49"
     page = opened(f"#/sweeps/{named.id}?view=map&colour={colour}&at.operation.rotation_speed_rpm=90")

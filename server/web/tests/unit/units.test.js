@@ -63,6 +63,13 @@ test("names of columns are labels with node, depth, window and variant", () => {
   assert.equal(units.label("unknown_name"), "unknown name");
 });
 
+test("columns of a node name it as links do", () => {
+  assert.equal(units.nodeOfColumn("orbit_radius_rms_49"), "49");
+  assert.equal(units.nodeOfColumn("line_frequency_hz_57_7m_w2"), "57.7m");
+  assert.equal(units.nodeOfColumn("friction_coefficient_max"), "");
+  assert.equal(units.nodeOfColumn(""), "");
+});
+
 test("units of variants are those of the quantity, but biases are shares", () => {
   assert.deepEqual(units.unit("orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("confidence_orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });

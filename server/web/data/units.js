@@ -1,6 +1,7 @@
 // Labels and units of columns and of a scenario's fields.
 
 import { getNeeded } from "./api.js";
+import { FIELD_NAMES } from "./field-names.js";
 import { unitSystem } from "./settings.js";
 
 /**
@@ -21,6 +22,8 @@ export async function loadQuantities() {
   registry = await getNeeded("/v1/quantities").catch(() => registry);
 }
 
+/** Largest value of a quantity over all nodes of which a summary has it: a column that the page makes. */
+const LARGEST = /^largest_(.+)$/;
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
 // A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
 const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
@@ -28,16 +31,20 @@ const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 /**
  * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, key?: string, depth?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
-  if (registry[name]) return { entry: registry[name] };
+  if (registry[name]) return { entry: registry[name], key: name };
+  const largest = LARGEST.exec(name)?.[1];
+  if (largest && registry[largest]) return { entry: registry[largest], key: largest, variant: "largest" };
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
   const place = PLACE.exec(rest);
+  const key = rest.replace(PLACE, "");
   return {
-    entry: registry[rest.replace(PLACE, "")],
+    entry: registry[key],
+    key,
     variant: variant?.[1],
     depth: place?.[1]?.slice(0, -1).replace("_", "."),
     node: place?.[2],
@@ -46,13 +53,15 @@ function parse(name) {
 }
 
 /**
- * Label of a name in pictures, such as `orbit radius rms, node 49`.
+ * Label of a name in pictures, such as `lateral vibration, node 49`.
  * @param {string} name
  */
 export function label(name) {
-  const { entry, depth, node, window, variant } = parse(name);
+  const { entry, key = "", depth, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
-  const parts = [variant ? `${variant.replaceAll("_", " ")} of ${entry.label}` : entry.label];
+  const words = FIELD_NAMES[key] ?? entry.label;
+  if (variant === "largest") return `largest ${words} of all recorded nodes`;
+  const parts = [variant ? `${variant.replaceAll("_", " ")} of ${words}` : words];
   if (depth) parts[0] += ` at ${depth} m`;
   if (node) parts.push(`node ${node}`);
   if (window) parts.push(`window ${window}`);
@@ -71,7 +80,8 @@ export function nodeOfColumn(name) {
 
 /** @param {string} name */
 export function meaning(name) {
-  return parse(name).entry?.meaning ?? "";
+  const { entry } = parse(name);
+  return entry?.meaning ? `${entry.meaning} Column ${name}.` : "";
 }
 
 /**

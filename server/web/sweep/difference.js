@@ -82,7 +82,7 @@ class Difference {
   others() {
     const other = this.#other;
     if (!other || this.#context.query.get("with") !== other.sweep.id) return [];
-    return [{ id: other.sweep.id, path: other.table.path, fields: this.fields.theirs }];
+    return [{ id: other.sweep.id, path: other.table.path, fields: other.table.served(this.fields.theirs) }];
   }
 
   /** @param {string} name of a choice in the link */
@@ -196,7 +196,7 @@ class Difference {
   /** @param {Shown} shown @param {string[]} axes @param {string[]} results */
   #columnChoices({ x, y, colour }, axes, results) {
     const options = (/** @type {string[]} */ names) =>
-      names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+      names.map((name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]));
     return [
       choice("Across", options(axes), x, this.#set("x")),
       y && choice("Up", options(axes.filter((axis) => axis !== x)), y, this.#set("y")),
@@ -327,7 +327,7 @@ class Difference {
         }
       : {
           xaxis: axis(x),
-          yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] },
+          yaxis: { title: context.depths.title(colour), quantity: colour, domain: [0.45, 1] },
           yaxis2: { title: name, ...(this.#isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
         };
     const shape = await draw(this.#place, traces, layout, context.signal);

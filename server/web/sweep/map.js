@@ -152,7 +152,7 @@ class SweepMap {
       attend(this.redraw(), this.#context.signal);
     };
     const named = (/** @type {string[]} */ names) =>
-      names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+      names.map((name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]));
     const words = isText(values);
     return [
       choice("Across", named(axes), x, set("x")),

@@ -1,6 +1,6 @@
 // All swept parameters and a few results side by side, a line a point.
 
-import { label, say, shown, title, unit } from "../data/units.js";
+import { say, shown, unit } from "../data/units.js";
 import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -118,7 +118,7 @@ class ParallelCoordinates {
 
   async redraw() {
     const isNewest = this.#begin();
-    const { table, biases, signal } = this.#context;
+    const { table, biases, depths, signal } = this.#context;
     const { colour, beside } = this.#drawControls();
     const names = this.#namesInOrder();
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
@@ -135,13 +135,13 @@ class ParallelCoordinates {
       this.#caption,
       HOW,
       [...new Set([beside, colour])].map(
-        (name) => biases.say(name) && ` ${label(name)}: ${biases.say(name)}`,
+        (name) => biases.say(name) && ` ${depths.label(name)}: ${biases.say(name)}`,
       ),
     );
     const line = {
       color: dimensions[names.indexOf(colour)].values,
       colorscale: lineScale(),
-      colorbar: colourBar(title(colour)),
+      colorbar: colourBar(depths.title(colour)),
     };
     const trace = {
       type: "parcoords",
@@ -163,7 +163,9 @@ class ParallelCoordinates {
 
   #drawControls() {
     const { results, colour, beside } = chosenIn(this.#context);
-    const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    const options = results.map(
+      (name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]),
+    );
     fill(
       this.#controls,
       choice("Colour and last axis", options, colour, (value) => this.#keep({ colour: value })),
@@ -189,7 +191,7 @@ class ParallelCoordinates {
       const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
       return {
         name,
-        label: title(name),
+        label: this.#context.depths.title(name),
         tickformat: TICKS,
         constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
         values,
@@ -216,6 +218,7 @@ class ParallelCoordinates {
     this.#fields.show(
       dimensions.map((dimension) => ({
         name: dimension.name,
+        title: this.#context.depths.title(dimension.name),
         ends: endsOf(dimension),
         ranges: opened(dimension),
       })),
@@ -230,9 +233,9 @@ class ParallelCoordinates {
 
   /** Shows the point of a line. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
   #read(ordinal, names, values) {
-    const { sweep, biases } = this.#context;
+    const { sweep, biases, depths } = this.#context;
     const words = names.map(
-      (name, order) => `${label(name)} ${say(name, values[order])}${biases.beside(name, ordinal)}`,
+      (name, order) => `${depths.label(name)} ${say(name, values[order])}${biases.beside(name, ordinal)}`,
     );
     fill(
       this.#reading,

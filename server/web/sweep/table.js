@@ -1,7 +1,7 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
 import { isUnsettled, SETTLING } from "../data/statistics.js";
-import { label, meaning, nodeOfColumn, number, title, unit } from "../data/units.js";
+import { meaning, nodeOfColumn, number, unit } from "../data/units.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { MOST } from "../ui/last-comparison.js";
@@ -156,7 +156,7 @@ class PointTable {
     const sort = h(
       "button",
       { onclick: () => this.#keep({ sort: name, order: isSorted && !isDown ? "down" : null }) },
-      name === "ordinal" ? "Point" : title(name),
+      name === "ordinal" ? "Point" : this.#context.depths.title(name),
       isSorted ? (isDown ? " ▼" : " ▲") : "",
     );
     const attributes = {
@@ -309,7 +309,7 @@ class PointTable {
         "label",
         { class: "tick small", style: "width:17rem" },
         box,
-        name === "ordinal" ? "point" : label(name),
+        name === "ordinal" ? "point" : this.#context.depths.label(name),
       );
     });
     fill(

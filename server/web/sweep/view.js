@@ -53,7 +53,7 @@ export async function show(main, route, signal) {
 
   const query = new URLSearchParams(route.query);
   const taken = snippets(() =>
-    sweepLines([{ id, path: data.path, fields: part.fields() }, ...(part.others?.() ?? [])]),
+    sweepLines([{ id, path: data.path, fields: data.served(part.fields()) }, ...(part.others?.() ?? [])]),
   );
   const drawn = () => taken.dispatchEvent(new Event("redraw"));
   /** @type {Context} */

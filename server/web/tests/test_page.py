@@ -384,7 +384,7 @@ def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: C
     other = client.submit("paper-200m", set=changes, axes=axes, name="slower").wait(timeout=120.0)
     page = opened(f"#/sweeps/{sweep.id}?view=difference&colour=orbit_radius_rms_49")
     page.get_by_label("Compared with").select_option(label="slower")
-    drawn(page, "difference of orbit radius rms, node 49")
+    drawn(page, "difference of lateral vibration, node 49")
     expect(page.get_by_text("slower less short, at 2 points that both have")).to_be_visible()
     assert f"with={other.id}" in page.url
     mine, theirs = (of.table().to_pandas().set_index(["flow_rate", "mud_density"]) for of in (sweep, other))

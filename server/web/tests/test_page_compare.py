@@ -475,7 +475,7 @@ def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: S
     expect(reading.get_by_role("paragraph")).to_have_count(len(ordinals))
     for number, tension in enumerate(tensions, 1):
         text = reading.get_by_role("paragraph").nth(number - 1).inner_text()
-        words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*normal force \S+ k?N", text)
+        words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*side force \S+ k?N", text)
         assert words is not None, text
         assert float(words.group(1)) == pytest.approx(tension, rel=1e-3)
     # The link holds where the cursor is.

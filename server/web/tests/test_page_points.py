@@ -255,7 +255,7 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
         depth, force = float(depths[node]), float(statics["normal_force"][node]) / 1e3
         tension = float(profile["effective_tension"][max(0, node - 1)]) / 1e3
         until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
-        words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*normal force (\S+) k?N", reading.inner_text())
+        words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*side force (\S+) k?N", reading.inner_text())
         assert words is not None, reading.inner_text()
         assert [float(word) for word in words.groups()[:2]] == pytest.approx([depth, tension], rel=1e-3)
         assert float(words.group(3)) == pytest.approx(force, rel=1e-3, abs=1e-9)

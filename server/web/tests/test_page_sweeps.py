@@ -599,7 +599,7 @@ def test_the_bar_of_colours_says_the_depth_of_its_node(opened: Opens, named: Swe
     statics = named.point(1).statics()
     depth = float(statics["measured_depth"][list(statics["node"]).index(49)])
     title = "place => place.data[0].colorbar.title.text"
-    assert picture.evaluate(title) == f"orbit radius rms, node 49 at {float(f'{depth:.4g}'):g} m [mm]"
+    assert picture.evaluate(title) == f"lateral vibration at {float(f'{depth:.4g}'):g} m [mm]"
 
 
 def test_the_list_is_asked_for_once_and_waits_for_nothing_beside_it(opened: Opens, named: Sweep) -> None:
@@ -629,7 +629,7 @@ def test_a_map_does_not_wait_for_the_depths_of_nodes(opened: Opens, named: Sweep
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
     picture = drawn(page, "node 49 over flow rate")
     title = "place => place.data[0].colorbar.title.text"
-    assert picture.evaluate(title) == "orbit radius rms, node 49 [mm]"
+    assert picture.evaluate(title) == "lateral vibration, node 49 [mm]"
     until(page, lambda: held != [])
     held[0].continue_()
     until(page, lambda: " m [mm]" in picture.evaluate(title))
@@ -644,7 +644,7 @@ def test_names_do_without_the_depths_of_an_equilibrium_that_is_gone(
     with page.expect_response("**/statics?*"):
         page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
     picture = drawn(page, "node 49 over flow rate")
-    assert picture.evaluate("place => place.data[0].colorbar.title.text") == "orbit radius rms, node 49 [mm]"
+    assert picture.evaluate("place => place.data[0].colorbar.title.text") == "lateral vibration, node 49 [mm]"
     assert page.locator("#notices").text_content() == ""
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 410" not in text]

@@ -3,7 +3,8 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { near } from "./browser.js";
+import { near, QUANTITIES } from "./browser.js";
+import { FIELD_NAMES } from "../../data/field-names.js";
 import { choose } from "../../data/settings.js";
 import * as units from "../../data/units.js";
 
@@ -53,12 +54,14 @@ test("values are written with their units", () => {
 });
 
 test("names of columns are labels with node, depth, window and variant", () => {
-  const label = "orbit radius rms";
+  const label = "lateral vibration";
   assert.equal(units.label("orbit_radius_rms_49"), `${label}, node 49`);
   assert.equal(units.label("orbit_radius_rms_57_7m"), `${label} at 57.7 m`);
   assert.equal(units.label("orbit_radius_rms_980m"), `${label} at 980 m`);
   assert.equal(units.label("spread_orbit_radius_rms_49"), `spread of ${label}, node 49`);
   assert.match(units.label("line_frequency_hz_49_w2"), /, node 49, window 2$/);
+  assert.equal(units.label("largest_orbit_radius_rms"), `largest ${label} of all recorded nodes`);
+  assert.equal(units.label("largest_normal_force"), "largest side force");
   assert.equal(units.label("mud.density"), "mud density");
   assert.equal(units.label("unknown_name"), "unknown name");
 });
@@ -74,9 +77,18 @@ test("units of variants are those of the quantity, but biases are shares", () =>
   assert.deepEqual(units.unit("orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("confidence_orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "", size: 1 });
-  assert.equal(units.title("orbit_radius_rms_49"), "orbit radius rms, node 49 [mm]");
+  assert.equal(units.title("orbit_radius_rms_49"), "lateral vibration, node 49 [mm]");
   assert.equal(units.servedUnit("orbit_radius_rms_49"), "m");
   assert.equal(units.servedUnit("friction_coefficient"), "");
+});
+
+test("the meaning of a column ends with the column's name in scripts", () => {
+  assert.match(units.meaning("torque_top"), /Column torque_top\.$/);
+  assert.equal(units.meaning("unknown_name"), "");
+});
+
+test("names of the field are of columns that the vocabulary has", () => {
+  for (const name of Object.keys(FIELD_NAMES)) assert.ok(name in QUANTITIES, name);
 });
 
 test("paths of a scenario are those of the vocabulary, whatever their indices", () => {

@@ -499,10 +499,18 @@ def test_the_link_holds_the_time_and_the_view_of_the_string(opened: Opens, recor
     drawn(other, "Rotation speed and torque")
     until(other, lambda: pixels(again) == expected)
     assert clock(other) == clock(page) == pytest.approx(0.25)
-    # The usual view is no part of the link.
+    # The usual view, a section, is no part of the link.
     page.keyboard.press("Home")
     until(page, lambda: "turn=" not in page.url)
-    assert pixels(picture) != expected
+    section = pixels(picture)
+    assert section != expected
+    views = {section}
+    for name in ("Plan", "Free view"):
+        page.get_by_role("button", name=name).click()
+        until(page, lambda: "turn=" in page.url and pixels(picture) not in views)
+        views.add(pixels(picture))
+    page.get_by_role("button", name="Section").click()
+    until(page, lambda: "turn=" not in page.url and pixels(picture) == section)
 
 
 def test_the_string_is_saved_as_it_is_shown(opened: Opens, recorded: Sweep) -> None:

@@ -56,5 +56,24 @@ function stepOf(value, [least, largest]) {
   return Math.max(0, Math.min(STEPS - 1, Math.round(part * (STEPS - 1))));
 }
 
+/** Variables of the style sheet that colour the states of points. @type {Record<string, string>} */
+const STATES = {
+  succeeded: "--good",
+  running: "--accent",
+  queued: "--wait",
+  failed: "--bad",
+  cancelled: "--stop",
+};
+
+/**
+ * Colour of a state in pictures, which is that of its word on the page.
+ * @param {string} word
+ * @returns {string | undefined} undefined of another word
+ */
+export function stateColour(word) {
+  if (!STATES[word]) return undefined;
+  return getComputedStyle(document.documentElement).getPropertyValue(STATES[word]).trim();
+}
+
 /** The scale as a gradient of CSS, from left to right. */
 export const GRADIENT = `linear-gradient(to right, ${Array.from({ length: 11 }, (_, step) => COLOURS[Math.round((step / 10) * (STEPS - 1))]).join(", ")})`;

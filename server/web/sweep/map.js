@@ -1,10 +1,11 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { ends, layered } from "../data/grid-layers.js";
+import { theme } from "../data/settings.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
-import { BLACK, inkOn } from "../draw/colours.js";
+import { BLACK, inkOn, stateColour, WHITE } from "../draw/colours.js";
 import {
   adjust,
   canvas,
@@ -470,10 +471,13 @@ function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
   if (isText(values)) {
     const vocabulary = distinct(values);
     const count = Math.max(vocabulary.length, 1);
-    const discrete = Array.from({ length: count }, (_, index) => [
-      [index / count, WORDS[index % WORDS.length]],
-      [(index + 1) / count, WORDS[index % WORDS.length]],
-    ]).flat();
+    const discrete = Array.from({ length: count }, (_, index) => {
+      const ofWord = stateColour(String(vocabulary[index])) ?? WORDS[index % WORDS.length];
+      return [
+        [index / count, ofWord],
+        [(index + 1) / count, ofWord],
+      ];
+    }).flat();
     return {
       z: rows.map((index) =>
         values[index] === null ? null : vocabulary.indexOf(/** @type {string} */ (values[index])),
@@ -568,7 +572,13 @@ function samplesOf(places, colour, { rows, values }, { colours: { z, words, scal
       text,
       key: ordinal,
       value: typeof value === "number" ? at(colour, value) : null,
-      ink: words ? BLACK : shade === null ? inks().soft : inkOn(shade, [scale.zmin, scale.zmax]),
+      ink: words
+        ? theme() === "dark"
+          ? BLACK
+          : WHITE
+        : shade === null
+          ? inks().soft
+          : inkOn(shade, [scale.zmin, scale.zmax]),
     };
   });
 }

@@ -2,6 +2,7 @@
 
 import { isText } from "../data/sweep-table.js";
 import { label, say, shown } from "../data/units.js";
+import { stateColour } from "../draw/colours.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -155,7 +156,11 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
       customdata: rows.map((index) => ordinals[index]),
-      marker: { size, color: LINES[order % LINES.length], symbol: order },
+      marker: {
+        size,
+        color: stateColour(String(word)) ?? LINES[order % LINES.length],
+        symbol: order,
+      },
       showlegend: true,
     };
   });

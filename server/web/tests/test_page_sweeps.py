@@ -292,6 +292,31 @@ def test_the_time_left_is_unknown_while_a_sweep_waits(idle: str, opened: Opens) 
     expect(page.get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
 
 
+def test_a_sweep_that_has_not_begun_waits_behind_others(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        first, second = (
+            client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, rate]}, name=f"at {rate}")
+            for rate in (0.02, 0.03)
+        )
+        page = opened(f"#/sweeps/{second.id}", address=idle)
+        expect(page.locator(".state").first).to_have_text("waiting")
+        expect(page.get_by_text("0 of 2 succeeded, behind 1 sweep, time left unknown")).to_be_visible()
+        first.cancel()
+        expect(page.get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
+
+
+def test_a_state_has_one_colour_on_the_page(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
+    picture = drawn(page, "over flow rate")
+    of_word = "element => getComputedStyle(element).color"
+    word = page.locator(".state.succeeded, .state.completed").first.evaluate(of_word)
+    of_cell = (
+        "place => { const span = document.createElement('span'); span.style.color = place.data[0].colorscale[0][1];"
+    )
+    of_cell += " document.body.append(span); const { color } = getComputedStyle(span); span.remove(); return color; }"
+    assert picture.evaluate(of_cell) == word
+
+
 @pytest.fixture
 def other(client: Client) -> Sweep:
     """Two of the points of `named`, at another friction."""

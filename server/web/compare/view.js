@@ -88,7 +88,7 @@ export async function show(main, route, signal) {
     points.length > 0 && shown.parts,
   );
   if (points.length) shown.draw();
-  return "Compare";
+  return `Compare points, ${VIEWS[view].name}`;
 }
 
 /** @param {Compared[]} points @param {(id: string) => string} nameOf a sweep @param {(key: string, which: string) => HTMLElement} takeOut */

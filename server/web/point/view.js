@@ -48,11 +48,12 @@ export async function show(main, route, signal) {
   const biases = new Biases();
   await biases.load(sweep, signal);
   const place = { sweep, ordinal, path, query: route.query };
+  const title = `Point ${ordinal} of ${sweep.name ?? `Sweep ${id.slice(-8)}`}`;
   const heading = h("div", {});
   if (!point.summary) {
     fill(heading, headingPart(place, point));
     showWaiting(main, heading, place, point, signal);
-    return `Point ${ordinal}`;
+    return title;
   }
 
   const taken = snippets(() => {
@@ -91,7 +92,7 @@ export async function show(main, route, signal) {
       h("p", { class: "empty", role: "alert" }, error instanceof Error ? error.message : String(error)),
     );
   });
-  return `Point ${ordinal}`;
+  return `${title}, ${name}`;
 }
 
 /**

@@ -101,7 +101,7 @@ export async function show(main, route, signal) {
     signal,
   );
   shown.start();
-  return sweep.name ?? `Sweep ${id.slice(-8)}`;
+  return `${sweep.name ?? `Sweep ${id.slice(-8)}`}, ${text}`;
 }
 
 /** A sweep on the page, which follows its changes: head, tabs, and the part that is drawn. */

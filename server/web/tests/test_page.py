@@ -26,7 +26,7 @@ def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:
     link.click()
     expect(page.get_by_role("heading", level=1)).to_have_text(NASTY)
     assert page.locator("main img, main script").count() == 0
-    assert page.title() == f"{NASTY} · drillsweep"
+    assert page.title() == f"{NASTY}, Map · drillsweep"
 
 
 def test_a_sweep_is_submitted_and_watched_until_it_is_complete(opened: Opens) -> None:

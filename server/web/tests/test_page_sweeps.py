@@ -730,6 +730,16 @@ def test_points_are_ticked_and_compared(opened: Opens, named: Sweep) -> None:
     expect(page.get_by_text(re.compile("point 1 node 49 at .*; point 2 node 49 at"))).to_be_visible()
 
 
+def test_titles_tell_sweeps_points_and_views_apart(opened: Opens, recorded: Sweep) -> None:
+    for view, title in [
+        (f"sweeps/{recorded.id}?view=table", "snapshots, Table"),
+        (f"sweeps/{recorded.id}/points/1", "Point 1 of snapshots, Profiles"),
+        (f"sweeps/{recorded.id}/points/1?view=energy", "Point 1 of snapshots, Energy"),
+        (f"compare?points={recorded.id}:1&view=energy", "Compare points, Energy"),
+    ]:
+        expect(opened(f"#/{view}")).to_have_title(f"{title} · drillsweep")
+
+
 def test_a_point_keeps_node_and_window_in_its_links(opened: Opens, named: Sweep, troubles: list[str]) -> None:
     page = opened(f"#/sweeps/{named.id}?view=table&sort=orbit_radius_rms_49")
     page.get_by_role("link", name="2", exact=True).click()
@@ -982,6 +992,15 @@ def test_a_sweep_in_which_points_failed_is_marked_so(opened: Opens, failing: Swe
     done = client.submit("paper-200m", set=SHORT, axes=axes, name="nothing fails").wait(timeout=120.0)
     page = opened(f"#/sweeps/{done.id}")
     assert page.locator(".state", has_text=re.compile("^completed$")).evaluate(mark) != [colour, sign]
+
+
+def test_a_failure_of_the_list_is_shown_with_its_cause(opened: Opens, failing: Sweep) -> None:
+    error = failing.point(1).error
+    assert error is not None
+    page = opened("#/sweeps", viewport={"width": 900, "height": 800})
+    reason = page.get_by_role("region", name="What failed lately").get_by_text(error.reason).first
+    expect(reason).to_be_visible()
+    assert reason.evaluate("element => element.scrollHeight <= element.clientHeight + 1")
 
 
 def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Client) -> None:

@@ -1,11 +1,12 @@
 // All swept parameters and a few results side by side, a line a point.
 
 import { say, shown, unit } from "../data/units.js";
-import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
+import { canvas, colourBar, draw, laidOut, lineScale } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link, rounded } from "../ui/router.js";
+import { axisNames } from "./axis-names.js";
 import { axisControls } from "./parallel-controls.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
 import { preferred, undelayed } from "./part.js";
@@ -14,7 +15,9 @@ const HOW =
   "Drag along an axis, or enter a range below, to filter the points. Drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
 
 /** Form of the numbers at axes: no letters for powers of a thousand, since units have their own. */
-const TICKS = ",.4~r";
+const TICKS = ".4~r";
+/** Least number whose thousands are apart. */
+const FIVE_DIGITS = 1e4;
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */
@@ -53,6 +56,12 @@ function usualNames(context) {
 class ParallelCoordinates {
   #context;
   #place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
+  /** On a narrow screen the picture is scrolled sideways. */
+  #scroller = h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-label": "Parallel coordinates, scrollable" },
+    this.#place,
+  );
   #caption = h("figcaption", {});
   #reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
   #left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
@@ -73,7 +82,7 @@ class ParallelCoordinates {
       "div",
       {},
       this.#controls,
-      h("figure", {}, this.#place, this.#reading, this.#left, this.#caption),
+      h("figure", {}, this.#scroller, this.#reading, this.#left, this.#caption),
       this.#fields.element,
     );
   }
@@ -130,7 +139,17 @@ class ParallelCoordinates {
       fill(this.#caption, "No point has all of these values yet.");
       return;
     }
-    const dimensions = this.#dimensions(names, columns, rows);
+    await laidOut(this.#scroller, signal);
+    if (!isNewest()) return;
+    const named = axisNames(
+      names.map((name) => depths.title(name)),
+      this.#scroller.clientWidth,
+    );
+    this.#place.style.minWidth = `${named.width}px`;
+    const dimensions = this.#dimensions(names, columns, rows).map((dimension, order) => ({
+      ...dimension,
+      label: named.labels[order],
+    }));
     fill(
       this.#caption,
       HOW,
@@ -147,10 +166,10 @@ class ParallelCoordinates {
       type: "parcoords",
       dimensions,
       line,
-      labelangle: dimensions.length > 4 ? -12 : 0,
+      labelside: named.side,
       labelfont: { size: 12 },
     };
-    const shape = await draw(this.#place, [trace], { margin: { l: 80, r: 60, t: 70, b: 30 } }, signal);
+    const shape = await draw(this.#place, [trace], { margin: named.margin }, signal);
     this.#readLine = (number) =>
       this.#read(
         Number(ordinals[rows[number]]),
@@ -191,8 +210,7 @@ class ParallelCoordinates {
       const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
       return {
         name,
-        label: this.#context.depths.title(name),
-        tickformat: TICKS,
+        tickformat: values.some((value) => Math.abs(value) >= FIVE_DIGITS) ? `,${TICKS}` : TICKS,
         constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
         values,
       };

@@ -1064,6 +1064,7 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     order = "place => place.data[0].dimensions.map(({ name }) => name)"
     before = picture.evaluate(order)
     titles = picture.locator(".axis-title")
+    titles.first.scroll_into_view_if_needed()
     first, second = (titles.nth(number).bounding_box() for number in range(2))
     assert first is not None
     assert second is not None
@@ -1075,6 +1076,20 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     until(page, lambda: f"order={'%2C'.join(moved)}" in page.url)
     copy = opened(f"#{page.url.partition('#')[2]}")
     assert drawn(copy, "Parallel coordinates").evaluate(order) == moved
+
+
+def test_names_of_parallel_axes_do_not_overlap_on_a_phone(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel", viewport={"width": 390, "height": 844})
+    picture = drawn(page, "Parallel coordinates")
+    read = "place => [...place.querySelectorAll('.axis-title, .axis-extent-text')].map((text) => {"
+    read += " const { left, right, top, bottom } = text.getBoundingClientRect(); return [left, right, top, bottom]; })"
+    texts = [text for text in picture.evaluate(read) if text[1] > text[0]]
+    assert len(texts) >= 5 * 3
+    for at, (left, right, top, bottom) in enumerate(texts):
+        for other_left, other_right, other_top, other_bottom in texts[:at]:
+            assert right <= other_left or other_right <= left or bottom <= other_top or other_bottom <= top
+    # Its place is scrolled, not the page.
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_axes_of_parallel_coordinates_are_moved_by_the_keyboard(opened: Opens, named: Sweep) -> None:

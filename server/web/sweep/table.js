@@ -1,8 +1,9 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
+import { csvOf } from "../data/csv.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { meaning, nodeOfColumn, number, unit } from "../data/units.js";
-import { choice, debounced, fill, h } from "../ui/dom.js";
+import { choice, debounced, download, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { MOST } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
@@ -91,6 +92,11 @@ class PointTable {
       h("label", { class: "field" }, h("span", {}, "Filter, in units as shown"), this.#filter),
       states,
       this.#compare,
+      h(
+        "button",
+        { onclick: () => this.#save(), title: "The rows and columns shown, in SI units" },
+        "Save as CSV",
+      ),
     );
     this.element = h("div", {}, controls, this.#wrong, this.#columnsPart, this.#status, this.#scroller);
   }
@@ -205,6 +211,14 @@ class PointTable {
       this.#tick(ordinal),
       this.names.map((name) => this.#cell(name, index, ordinal)),
     );
+  }
+
+  /** Saves the rows and columns that are shown. */
+  #save() {
+    const { sweep } = this.#context;
+    const name = (sweep.name ?? sweep.id).replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase();
+    const text = csvOf(this.names, this.#columns, this.#rows);
+    download(new Blob([text], { type: "text/csv" }), `${name}.csv`);
   }
 
   /** Column by which rows are sorted; its node is opened and compared. */

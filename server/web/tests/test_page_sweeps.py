@@ -730,6 +730,21 @@ def test_points_are_ticked_and_compared(opened: Opens, named: Sweep) -> None:
     expect(page.get_by_text(re.compile("point 1 node 49 at .*; point 2 node 49 at"))).to_be_visible()
 
 
+def test_the_table_is_saved_as_it_is_shown(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&columns=ordinal,flow_rate,torque_top&sort=torque_top&order=down")
+    page.get_by_label("Filter, in units as shown").fill("flow_rate=0.04")
+    expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(4)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save as CSV").click()
+    assert download.value.suggested_filename.endswith(".csv")
+    rows = list(csv.DictReader(download.value.path().read_text().splitlines()))
+    table = named.table().to_pandas()
+    wanted = table[table["flow_rate"] == 0.04].sort_values("torque_top", ascending=False)
+    assert list(rows[0]) == ["ordinal", "flow_rate", "torque_top"]
+    assert {int(row["ordinal"]) for row in rows} == set(wanted["ordinal"])
+    assert [float(row["torque_top"]) for row in rows] == list(wanted["torque_top"])
+
+
 def test_titles_tell_sweeps_points_and_views_apart(opened: Opens, recorded: Sweep) -> None:
     for view, title in [
         (f"sweeps/{recorded.id}?view=table", "snapshots, Table"),

@@ -45,11 +45,11 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     links["sweep-failures"] = f"#/sweeps/{failed}?view=failures"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_57_7m"
     for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
-        links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=1"
+        links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=57.7m"
     links["point-profiles"] += "&cursor=123.5"
     points = f"{sweep}:1,{sweep}:4,{other}:4"
     for view in COMPARED:
-        links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=1&from=40&to=60"
+        links[f"compare-{view}"] = f"#/compare?points={points}&view={view}&node=57.7m&from=40&to=60"
     links["compare-well"] += "&colour=friction_coefficient"
     links["compare-string"] += "&colour=orbit_radius_rms"
     links["compare-bit"] += "&end=top"

@@ -1,6 +1,7 @@
 // Points of a comparison: loaded from the link, told from each other, with the depths of their recorded nodes.
 
 import { get, Problem } from "../data/api.js";
+import { nodeInLink } from "../data/motion-requests.js";
 import { sayParameters } from "../data/units.js";
 import { DASHES, LINES } from "../draw/plots.js";
 
@@ -112,24 +113,33 @@ function leaves(document, path = "") {
 }
 
 /**
- * Measured depths at which any of the points recorded a node, from the top [m].
+ * Measured depths at which any of the points recorded a node, from the top, and those of the nodes by their names in links [m].
+ * @typedef {{depths: number[], byNode: Map<string, number>}} RecordedDepths
+ */
+
+/**
  * @param {Compared[]} points
  * @param {AbortSignal} signal
- * @returns {Promise<number[]>}
+ * @returns {Promise<RecordedDepths>}
  */
 export async function recordedDepths(points, signal) {
   const found = await Promise.all(
     points.map(async ({ detail, path }) => {
       /** @type {any[]} */
       const nodes = detail.summary ? detail.scenario.recording.nodes : [];
-      if (!nodes.some((entry) => entry.node !== undefined)) return nodes.map((entry) => entry.depth);
+      const named = (/** @type {any} */ entry, /** @type {number} */ depth) =>
+        /** @type {[string, number]} */ ([nodeInLink(entry), depth]);
+      if (!nodes.some((entry) => entry.node !== undefined))
+        return nodes.map((entry) => named(entry, entry.depth));
       try {
         const { columns } = await get(
           `${path}/statics`,
           { format: "json", fields: "node,measured_depth" },
           signal,
         );
-        return nodes.map((entry) => entry.depth ?? columns.measured_depth[columns.node.indexOf(entry.node)]);
+        return nodes.map((entry) =>
+          named(entry, entry.depth ?? columns.measured_depth[columns.node.indexOf(entry.node)]),
+        );
       } catch (error) {
         // Without its equilibrium it has no motion either.
         if (!(error instanceof Problem) || error.status === 401) throw error;
@@ -137,9 +147,11 @@ export async function recordedDepths(points, signal) {
       }
     }),
   );
-  const inOrder = found
-    .flat()
-    .filter(Number.isFinite)
-    .sort((a, b) => a - b);
-  return inOrder.filter((depth, index) => index === 0 || depth - inOrder[index - 1] > SAME_DEPTH);
+  const entries = found.flat().filter(([, depth]) => Number.isFinite(depth));
+  const inOrder = entries.map(([, depth]) => depth).sort((a, b) => a - b);
+  return {
+    depths: inOrder.filter((depth, index) => index === 0 || depth - inOrder[index - 1] > SAME_DEPTH),
+    // The first point's nodes stand.
+    byNode: new Map(entries.toReversed()),
+  };
 }

@@ -3,14 +3,15 @@
 
 import { largestShown } from "../data/decimation.js";
 import { frames } from "../data/snapshots.js";
-import { shown } from "../data/units.js";
-import { canvas, draw } from "../draw/plots.js";
+import { shown, title } from "../data/units.js";
+import { canvas, draw, laidOut } from "../draw/plots.js";
 import { contactMap } from "../point/contacts.js";
-import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE, twoPanels } from "../point/rotation.js";
+import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE } from "../point/rotation.js";
 import { describe, drawSpectrogram, largestOf, RANGES } from "../point/spectrogram.js";
 import { StringPlayer } from "../point/string-player.js";
 import { fill, h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
+import { panelsOverTime } from "./panels.js";
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
 /** @typedef {import("./comparison.js").Compared} Compared */
@@ -169,7 +170,7 @@ export async function drawEnds(place, comparison) {
     ),
   );
   const isInSnapshots = !isInHistories && snapshots.every((lines) => lines.length);
-  const traces = found.flatMap(([point, { history }], order) => {
+  const panels = found.flatMap(([point, { history }], order) => {
     const isOfHistory = history.length > 0 && !isInSnapshots;
     const lines = isOfHistory ? history : snapshots[order];
     if (!lines.length)
@@ -177,19 +178,14 @@ export async function drawEnds(place, comparison) {
         `Point ${point.number} is missing: ${end === "bit" ? RECORD_ENDS : "Rotation speed and torque at the top are in snapshots, or in the history of the first node where it is recorded; this point has neither."}`,
       );
     else sources.set(point.number, isOfHistory ? "history" : "snapshots");
-    return lines.map(({ quantity, time, values }) => ({
-      type: "scattergl",
-      mode: "lines",
-      x: time,
-      y: shown(quantity, values),
-      yaxis: quantity === "torque" ? "y2" : "y",
-      name: point.name,
-      legendgroup: String(point.number),
-      showlegend: quantity !== "torque",
-      line: { color: point.colour, dash: point.dash, width: 1 },
-      hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
-    }));
+    return lines.map((line) => endPanel(point, line));
   });
+  // Speeds of all points above their torques.
+  const [speeds, torques] = [true, false].map((isSpeed) =>
+    panels.filter(({ scale }) => (scale === "torque") !== isSpeed),
+  );
+  await laidOut(place, comparison.signal);
+  const { traces, layout } = panelsOverTime(place, [...speeds, ...torques]);
   const names = [...new Set(sources.values())];
   if (names.length === 1)
     comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
@@ -201,7 +197,27 @@ export async function drawEnds(place, comparison) {
   return draw(
     place,
     traces,
-    { shows: [window, end], dragmode: "select", selectdirection: "h", ...twoPanels() },
+    { ...layout, shows: [window, end], dragmode: "select", selectdirection: "h" },
     comparison.signal,
   );
+}
+
+/**
+ * Panel of one quantity at one end of a point's string.
+ * @param {Compared} point
+ * @param {import("../point/rotation.js").EndLine} line
+ * @returns {import("./panels.js").Panel}
+ */
+function endPanel(point, { quantity, time, values }) {
+  const trace = {
+    type: "scattergl",
+    mode: "lines",
+    x: time,
+    y: shown(quantity, values),
+    name: point.name,
+    showlegend: quantity !== "torque",
+    line: { color: point.colour, width: 1 },
+    hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+  };
+  return { ...point, traces: [trace], scale: quantity, yaxis: { title: title(quantity), quantity } };
 }

@@ -65,7 +65,9 @@ export async function show(main, route, signal) {
     { count: keys.length, nameOf, add: (key) => go(to([...keys, key])) },
     signal,
   );
-  const depths = VIEWS[view].isOfNode ? await recordedDepths(points, signal) : [];
+  const depths = VIEWS[view].isOfNode
+    ? await recordedDepths(points, signal)
+    : { depths: [], byNode: new Map() };
   const shown = new ShownComparison(
     new Choices(view, query, points, depths),
     (name) => to(keys, name),
@@ -86,7 +88,7 @@ export async function show(main, route, signal) {
     points.length > 0 && shown.parts,
   );
   if (points.length) shown.draw();
-  return "Compare";
+  return `Compare points, ${VIEWS[view].name}`;
 }
 
 /** @param {Compared[]} points @param {(id: string) => string} nameOf a sweep @param {(key: string, which: string) => HTMLElement} takeOut */
@@ -285,7 +287,7 @@ class ShownComparison {
 
   /** Writes the caption, and the data that points lack. @param {Comparison} comparison */
   #describe({ lacking, says, nodes }) {
-    const { view, depth } = this.#choices;
+    const { view, depth, isWindowed, windowNote } = this.#choices;
     fill(
       this.#lacking,
       lacking.map((sentence) => h("p", {}, sentence)),
@@ -294,6 +296,7 @@ class ShownComparison {
     fill(
       this.#caption,
       view === "orbit" && "Looking downhole, the low side down. ",
+      isWindowed && windowNote && `${windowNote} `,
       says.map((sentence) => `${sentence} `),
       shownNodes.length > 0 &&
         `The recorded node of each point that is nearest to ${say("measured_depth", depth)}: ${shownNodes.join("; ")}.`,

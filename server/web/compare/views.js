@@ -1,7 +1,7 @@
 // Views of a comparison, by their names in the link.
 
 import { spectrumRange } from "../data/motion-requests.js";
-import { label, say, shown, title, unit } from "../data/units.js";
+import { label, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
   orbitLayout,
@@ -10,11 +10,12 @@ import {
   spectrumLayout,
   spectrumTrace,
 } from "../draw/orbit.js";
-import { draw, inks } from "../draw/plots.js";
-import { ACCOUNTS, ledger } from "../point/energy.js";
+import { draw, laidOut } from "../draw/plots.js";
+import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
+import { panelsInPlane, panelsOverTime } from "./panels.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
@@ -99,8 +100,8 @@ export const VIEWS = {
   cost: { name: "Cost", table: "", kind: "table", isDocument: true, draw: drawCost },
 };
 
-/** @param {Compared} point @param {number[]} time @param {(number | null)[]} values */
-function overTime(point, time, values) {
+/** @param {Compared} point @param {number[]} time @param {(number | null)[]} values @param {string} [dash] */
+function overTime(point, time, values, dash = point.dash) {
   return {
     type: "scattergl",
     mode: "lines",
@@ -108,7 +109,7 @@ function overTime(point, time, values) {
     showlegend: true,
     x: time,
     y: values,
-    line: { color: point.colour, dash: point.dash, width: 1 },
+    line: { color: point.colour, dash, width: 1 },
     hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
   };
 }
@@ -181,59 +182,32 @@ function orbits(comparison) {
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawOrbits(place, comparison) {
   const found = await orbits(comparison);
-  const holes = holesOf(found);
-  const clearance = Math.max(...holes.map((hole) => hole.clearance));
+  if (!found.length) return draw(place, [], {}, comparison.signal);
+  await laidOut(place, comparison.signal);
+  const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
   const traces = found.map(([point, { orbit, lowSide }]) =>
     orbitTrace(orbit, lowSide, { color: point.colour }, point.name),
   );
-  const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
-  if (!found.length) return draw(place, [], {}, comparison.signal);
-  const isOne = holes.length === 1;
-  const which = (/** @type {Compared[]} */ points) =>
-    `${points.length > 1 ? "points" : "point"} ${points.map((point) => point.number).join(", ")}`;
-  const colourOf = (/** @type {Compared[]} */ points) =>
-    isOne || points.length > 1 ? inks().soft : points[0].colour;
-  comparison.says.push(
-    isOne
-      ? "On the grey circle the node touches the wall."
-      : `On its circle a node touches the wall: ${holes.map((hole) => `${which(hole.points)} ${say("clearance", hole.clearance)} from the axis${hole.points.length > 1 ? " (grey)" : ", in its colour"}`).join("; ")}.`,
-  );
-  const annotations = isOne
-    ? []
-    : holes.map((hole) => ({
-        x: 0,
-        y: shown("radius", [hole.clearance])[0],
-        text: `wall of ${which(hole.points)}`,
-        showarrow: false,
-        yanchor: "bottom",
-        font: { size: 11 },
-      }));
-  return draw(
-    place,
-    [...holes.map((hole) => holeTrace(hole.clearance, colourOf(hole.points))), ...traces],
-    {
-      ...orbitLayout(isZoomed, traces, clearance),
-      shows: [comparison.node, isZoomed],
-      annotations,
-      legend: { orientation: "v" },
-    },
-    comparison.signal,
-  );
+  comparison.says.push(sayHoles(found));
+  const clearance = Math.max(...found.map(([, one]) => one.clearance));
+  const panels = found.map(([point, one], order) => ({
+    ...point,
+    traces: [holeTrace(one.clearance), traces[order]],
+  }));
+  const { traces: all, layout } = panelsInPlane(place, panels, orbitLayout(isZoomed, traces, clearance));
+  return draw(place, all, { ...layout, shows: [comparison.node, isZoomed] }, comparison.signal);
 }
 
-/**
- * The holes around the nodes that are shown: points of one clearance have one.
- * @param {[Compared, {clearance: number}][]} found
- */
-function holesOf(found) {
-  /** @type {{clearance: number, points: Compared[]}[]} */
-  const holes = [];
-  for (const [point, { clearance }] of found) {
-    const same = holes.find((hole) => Math.abs(hole.clearance - clearance) < SAME_CLEARANCE);
-    if (same) same.points.push(point);
-    else holes.push({ clearance, points: [point] });
-  }
-  return holes;
+/** Sentence about the circles around the nodes that are shown. @param {[Compared, {clearance: number}][]} found */
+function sayHoles(found) {
+  const wall = "On the grey circle the node touches the wall";
+  const [[, first]] = found;
+  if (found.every(([, { clearance }]) => Math.abs(clearance - first.clearance) < SAME_CLEARANCE))
+    return `${wall}, ${say("clearance", first.clearance)} from the axis.`;
+  const walls = found.map(
+    ([point, { clearance }]) => `point ${point.number} ${say("clearance", clearance)} from the axis`,
+  );
+  return `${wall}: ${walls.join("; ")}.`;
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
@@ -243,30 +217,31 @@ async function drawHistories(place, comparison) {
   const traces = found.map(([point, { orbit, lowSide }]) => {
     const { time, u, v, radius } = orbit.columns;
     const seen = seenDownhole(u, v, lowSide);
-    return overTime(
-      point,
-      time,
-      shown("radius", direction === "radius" ? radius : direction === "across" ? seen.across : seen.up),
-    );
+    const values = direction === "radius" ? radius : direction === "across" ? seen.across : seen.up;
+    return /** @type {[Compared, any]} */ ([point, overTime(point, time, shown("radius", values), "solid")]);
   });
-  return draw(
-    place,
-    traces,
-    {
-      ...timeLayout(comparison),
-      shows: [comparison.window, direction],
-      yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" },
-    },
-    comparison.signal,
-  );
+  const yaxis = { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" };
+  return drawOverTime(place, comparison, traces, yaxis, direction);
 }
 
 /**
- * An axis of time across which a window is dragged; with another window a zoom is taken back.
+ * Draws a panel for each trace, across which a window is dragged; with another window a zoom is taken back.
+ * @param {HTMLElement} place
  * @param {Comparison} comparison
+ * @param {[Compared, any][]} found traces
+ * @param {any} yaxis of each
+ * @param {string} shows
  */
-function timeLayout({ window }) {
-  return { shows: window, dragmode: "select", selectdirection: "h", xaxis: { title: "time [s]" } };
+async function drawOverTime(place, { window, signal }, found, yaxis, shows) {
+  await laidOut(place, signal);
+  const panels = found.map(([point, trace]) => ({ ...point, traces: [trace], scale: "", yaxis }));
+  const { traces, layout } = panelsOverTime(place, panels);
+  return draw(
+    place,
+    traces,
+    { ...layout, shows: [window, shows], dragmode: "select", selectdirection: "h" },
+    signal,
+  );
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
@@ -287,14 +262,9 @@ async function drawRotation(place, comparison) {
       decimation: "minmax",
     });
     noteNode(comparison, point, node, columns.measured_depth[0]);
-    return overTime(point, history.columns.time, shown(name, history.columns[name]));
+    return overTime(point, history.columns.time, shown(name, history.columns[name]), "solid");
   });
-  return draw(
-    place,
-    found.map(([, trace]) => trace),
-    { ...timeLayout(comparison), yaxis: { title: title(quantity), quantity } },
-    comparison.signal,
-  );
+  return drawOverTime(place, comparison, found, { title: title(quantity), quantity }, quantity);
 }
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
@@ -355,13 +325,16 @@ async function drawEnergy(place, comparison) {
     ledger((await comparison.table(point, "energy")).columns),
   );
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
-  const { symbol } = unit("kinetic");
+  const { symbol, size } = suitedUnit(
+    "kinetic",
+    found.flatMap(([, one]) => one.accounts.map(one.change)),
+  );
   const traces = found.map(([point, one]) => ({
     type: "bar",
     name: point.name,
     showlegend: true,
     x: accounts.map(label),
-    y: accounts.map((name) => (one.accounts.includes(name) ? shown(name, [one.change(name)])[0] : null)),
+    y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
     marker: { color: point.colour },
     hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>`,
   }));
@@ -372,7 +345,7 @@ async function drawEnergy(place, comparison) {
       shows: "",
       barmode: "group",
       xaxis: { title: "" },
-      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic" },
+      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic", size },
     },
     comparison.signal,
   );
@@ -383,15 +356,22 @@ async function drawAccount(place, comparison, account) {
   const found = await each(comparison, async (point) => {
     const { columns } = await comparison.table(point, "energy");
     if (!columns[account]) throw new Lacking(`its ledger has no account of ${label(account)}`);
-    return { ...overTime(point, columns.time, shown(account, columns[account])), type: "scatter" };
+    return { point, time: columns.time, values: columns[account] };
   });
+  const { symbol, size } = suitedUnit(
+    account,
+    found.flatMap(([, { values }]) => values),
+  );
   return draw(
     place,
-    found.map(([, trace]) => trace),
+    found.map(([, { point, time, values }]) => ({
+      ...overTime(point, time, scaled(values, size)),
+      type: "scatter",
+    })),
     {
       shows: account,
       xaxis: { title: "time [s]" },
-      yaxis: { title: `${label(account)} [${unit(account).symbol}]`, quantity: account },
+      yaxis: { title: `${label(account)} [${symbol}]`, quantity: account, size },
     },
     comparison.signal,
   );

@@ -19,6 +19,9 @@ export function wellColour(query) {
   return QUANTITIES.find(([name]) => name === query.get("colour"))?.[0];
 }
 
+/** Height of the camera over wells that are aside of each other, in sizes of the picture. */
+const RAISED = 0.9;
+
 /** Factor by which the distance from the axis of the hole is multiplied. @param {URLSearchParams} query */
 export function wellFactor(query) {
   return exaggeration(query, EXAGGERATION);
@@ -68,7 +71,10 @@ export async function drawWells(place, comparison) {
       line,
     };
   });
-  return draw(place, traces, spaceLayout(), comparison.signal);
+  const { north = [0], east = [0] } = found[0]?.[1].statics ?? {};
+  // Wells aside of each other would cover each other in a section.
+  const layout = spaceLayout({ north, east }, aside ? RAISED : undefined);
+  return draw(place, traces, layout, comparison.signal);
 }
 
 /**

@@ -47,12 +47,12 @@ export class Depths {
     );
   }
 
-  /** The label of a column, with the depth of its node. @param {string} name */
+  /** The label of a column, with the depth of its node in place of its number. @param {string} name */
   label(name) {
-    return label(name).replace(/\bnode (\d+)/, (text, node) => {
+    return label(name).replace(/, node (\d+)/, (text, node) => {
       const depth = this.#depths.get(Number(node));
       this.isMissed ||= depth === undefined;
-      return depth === undefined ? text : `${text} at ${say("measured_depth", depth)}`;
+      return depth === undefined ? text : ` at ${say("measured_depth", depth)}`;
     });
   }
 

@@ -31,18 +31,28 @@ export function layered(xs, ys, requests) {
   return rest.length || !layers.length ? [...layers, grid(rest, xs, ys)] : layers;
 }
 
+/** Half the size of a cell whose value is the only one, relative to that value. */
+const ALONE = 0.05;
+
 /**
- * Ends of cells: halfway to the next value.
- * @param {number[]} values of a layer; of more than one, the picture finds the ends itself
+ * Ends of cells: halfway between neighbours, by ratio on a logarithmic axis, and at the rim the outermost values themselves, beyond which
+ * nothing was computed.
+ * @param {number[]} values of a layer, in order
  * @param {number[]} all that there are, in order
+ * @param {boolean} [isLog] whether the axis is logarithmic
  */
-export function ends(values, all) {
-  if (values.length !== 1 || all.length < 2) return values;
-  const index = all.indexOf(values[0]);
-  const [below, above] = [all[index - 1], all[index + 1]].map((next) =>
-    next === undefined ? undefined : Math.abs(next - values[0]) / 2,
-  );
-  return [values[0] - (below ?? above ?? 0), values[0] + (above ?? below ?? 0)];
+export function ends(values, all, isLog = false) {
+  const middle = (/** @type {number} */ a, /** @type {number} */ b) =>
+    isLog && a > 0 && b > 0 ? Math.sqrt(a * b) : (a + b) / 2;
+  if (values.length > 1) {
+    const between = values.slice(1).map((value, index) => middle(values[index], value));
+    return [values[0], ...between, values[values.length - 1]];
+  }
+  const [value] = values;
+  const half = ALONE * Math.abs(value) || 0.5;
+  if (all.length < 2) return [value - half, value + half];
+  const index = all.indexOf(value);
+  return [middle(all[index - 1] ?? value, value), middle(value, all[index + 1] ?? value)];
 }
 
 /** @param {number[]} points @param {number[]} xs @param {number[]} ys @returns {Layer} */

@@ -70,13 +70,33 @@ export function rotationTable(scenario, query, node) {
 }
 
 /**
- * The recorded node that a link names, or the first, as the service is asked for it.
+ * Name of a recorded node in links: its number, or the depth for which it is recorded.
+ * @param {{node?: number, depth?: number}} recorded
+ * @returns {string} such as `49` or `57.7m`
+ */
+export function nodeInLink({ node, depth }) {
+  return node !== undefined ? String(node) : `${depth}m`;
+}
+
+/**
+ * The node of a link that was not recorded; empty if it was, or if the link names none.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ */
+export function unrecordedNode({ recording: { nodes } }, query) {
+  const asked = query.get("node") ?? "";
+  return nodes.some((/** @type {any} */ one) => nodeInLink(one) === asked) ? "" : asked;
+}
+
+/**
+ * The recorded node that a link names, or the first, as it is requested from the service.
  * @param {any} scenario
  * @param {URLSearchParams} query of the link
  * @returns {{node: number} | {depth: number, nearest: true}}
  */
 export function selectedNode({ recording: { nodes } }, query) {
-  const asked = nodes[Number(query.get("node") ?? 0)] ?? nodes[0];
+  const named = nodes.find((/** @type {any} */ one) => nodeInLink(one) === query.get("node"));
+  const asked = named ?? nodes[0];
   return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
 }
 

@@ -78,6 +78,30 @@ export function biasOver(point, { from, to }, bias) {
 }
 
 /**
+ * The window in which points are compared: the one of their statistics if it is the same for all; otherwise the overlap of their windows, or
+ * the last third of the shortest run if there is none.
+ * @param {any[]} points
+ * @returns {{from: number, to: number, isShared: boolean, isOverlap: boolean}} [s]
+ */
+export function comparedWindow(points) {
+  const shortest = Math.min(...points.map(({ scenario }) => scenario.duration));
+  // A point without results has no statistics that another window would contradict.
+  const complete = points.filter(({ summary }) => summary);
+  const windows = (complete.length ? complete : points).map(verifiedWindow);
+  const [first] = windows;
+  const isShared = windows.every((window) => isSame(window, first, shortest)) && first.from < shortest;
+  if (isShared) return { from: first.from, to: Math.min(first.to, shortest), isShared, isOverlap: true };
+  const from = Math.max(...windows.map((window) => window.from));
+  const to = Math.min(shortest, ...windows.map((window) => window.to));
+  const isOverlap = to - from > SAME * shortest;
+  return {
+    ...(isOverlap ? { from, to } : { from: (shortest * 2) / 3, to: shortest }),
+    isShared: false,
+    isOverlap,
+  };
+}
+
+/**
  * @param {{from: number, to: number}} one
  * @param {{from: number, to: number}} other
  * @param {number} duration of the run [s]

@@ -4,6 +4,11 @@ import { get } from "./api.js";
 
 /** @typedef {(number | string | null)[]} Values */
 
+/** Column of the page: the largest orbit size of all recorded nodes. */
+export const LARGEST_ORBIT = "largest_orbit_radius_rms";
+/** Orbit size of a node, by its number or its depth. */
+const ORBIT = /^orbit_radius_rms_\d+(_\d+m|m)?$/;
+
 export class SweepTable {
   /** @type {Map<string, Values>} */
   #columns = new Map();
@@ -35,6 +40,7 @@ export class SweepTable {
       this.#columns = columns;
       this.names = listed.columns.map((/** @type {any} */ column) => column.name);
     }
+    this.#nameLargest();
     this.#count();
   }
 
@@ -58,18 +64,60 @@ export class SweepTable {
    * @returns {Promise<Values[]>}
    */
   async columns(...names) {
-    const missing = [...new Set(names)].filter((name) => !this.#columns.has(name));
+    const missing = this.served(names).filter((name) => !this.#columns.has(name));
     if (missing.length && !this.isWhole) {
       for (const [name, values] of await this.#fetch(missing)) this.#columns.set(name, values);
       this.#count();
     }
-    return names.map((name) => this.#columns.get(name) ?? Array(this.rows).fill(null));
+    const gaps = () => Array(this.rows).fill(null);
+    return names.map((name) =>
+      name === LARGEST_ORBIT
+        ? largestOf(this.#orbits().map((orbit) => this.#columns.get(orbit) ?? gaps()))
+        : (this.#columns.get(name) ?? gaps()),
+    );
+  }
+
+  /**
+   * Columns of the service behind those of the page.
+   * @param {string[]} names
+   */
+  served(names) {
+    return [...new Set(names.flatMap((name) => (name === LARGEST_ORBIT ? this.#orbits() : name)))];
+  }
+
+  /** Columns of the orbit size at each recorded node. */
+  #orbits() {
+    return this.names.filter((name) => ORBIT.test(name));
+  }
+
+  /** Adds the column of the largest orbit, if several nodes were recorded. */
+  #nameLargest() {
+    if (this.#orbits().length > 1)
+      this.names.splice(
+        this.names.findIndex((name) => ORBIT.test(name)),
+        0,
+        LARGEST_ORBIT,
+      );
   }
 
   /** Names of columns that hold words or numbers worth a colour or an axis. */
   results() {
     return this.names.filter((name) => name !== "ordinal" && name !== "error");
   }
+}
+
+/**
+ * Largest value of each row; a gap if a row has none.
+ * @param {Values[]} columns of numbers
+ * @returns {Values}
+ */
+export function largestOf(columns) {
+  return (columns[0] ?? []).map((_, row) =>
+    columns.reduce((/** @type {number | null} */ most, column) => {
+      const value = column[row];
+      return typeof value === "number" && (most === null || value > most) ? value : most;
+    }, null),
+  );
 }
 
 /** Paths of a scenario that the table calls by a shorter name. @type {Record<string, string>} */

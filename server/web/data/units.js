@@ -1,6 +1,7 @@
 // Labels and units of columns and of a scenario's fields.
 
 import { getNeeded } from "./api.js";
+import { FIELD_NAMES } from "./field-names.js";
 import { unitSystem } from "./settings.js";
 
 /**
@@ -21,6 +22,8 @@ export async function loadQuantities() {
   registry = await getNeeded("/v1/quantities").catch(() => registry);
 }
 
+/** Largest value of a quantity over all nodes of which a summary has it: a column that the page makes. */
+const LARGEST = /^largest_(.+)$/;
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
 // A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
 const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
@@ -28,16 +31,20 @@ const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 /**
  * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, key?: string, depth?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
-  if (registry[name]) return { entry: registry[name] };
+  if (registry[name]) return { entry: registry[name], key: name };
+  const largest = LARGEST.exec(name)?.[1];
+  if (largest && registry[largest]) return { entry: registry[largest], key: largest, variant: "largest" };
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
   const place = PLACE.exec(rest);
+  const key = rest.replace(PLACE, "");
   return {
-    entry: registry[rest.replace(PLACE, "")],
+    entry: registry[key],
+    key,
     variant: variant?.[1],
     depth: place?.[1]?.slice(0, -1).replace("_", "."),
     node: place?.[2],
@@ -46,22 +53,35 @@ function parse(name) {
 }
 
 /**
- * Label of a name in pictures, such as `orbit radius rms, node 49`.
+ * Label of a name in pictures, such as `lateral vibration, node 49`.
  * @param {string} name
  */
 export function label(name) {
-  const { entry, depth, node, window, variant } = parse(name);
+  const { entry, key = "", depth, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
-  const parts = [variant ? `${variant.replaceAll("_", " ")} of ${entry.label}` : entry.label];
+  const words = FIELD_NAMES[key] ?? entry.label;
+  if (variant === "largest") return `largest ${words} of all recorded nodes`;
+  const parts = [variant ? `${variant.replaceAll("_", " ")} of ${words}` : words];
   if (depth) parts[0] += ` at ${depth} m`;
   if (node) parts.push(`node ${node}`);
   if (window) parts.push(`window ${window}`);
   return parts.join(", ");
 }
 
+/**
+ * Node that a column is of, as links name it.
+ * @param {string} name of a column
+ * @returns {string} such as `49` or `57.7m`; empty of a column that is of no node
+ */
+export function nodeOfColumn(name) {
+  const { node, depth } = parse(name);
+  return node ?? (depth === undefined ? "" : `${depth}m`);
+}
+
 /** @param {string} name */
 export function meaning(name) {
-  return parse(name).entry?.meaning ?? "";
+  const { entry } = parse(name);
+  return entry?.meaning ? `${entry.meaning} Column ${name}.` : "";
 }
 
 /**
@@ -74,6 +94,33 @@ export function unit(name) {
   if (!entry?.unit || entry.unit === "1" || variant === "bias") return { symbol: "", size: 1 };
   const preferred = unitSystem() === "field" ? entry.field : entry.shown;
   return { symbol: written(preferred?.unit ?? entry.unit), size: preferred?.size ?? 1 };
+}
+
+/** Units that have prefixes, each for a thousand. */
+const PREFIXED = /^([kMG]?)((?:N|J|W|Pa)(?:·m)?)$/;
+const PREFIXES = ["", "k", "M", "G"];
+/** Least number that a larger unit shortens. */
+const LARGE = 1e4;
+
+/**
+ * Unit of a name in which the largest of some values is a short number, such as MJ of many J.
+ * @param {string} name
+ * @param {(number | null)[]} values as they are served
+ * @returns {{symbol: string, size: number}}
+ */
+export function suitedUnit(name, values) {
+  const { symbol, size } = unit(name);
+  const found = PREFIXED.exec(symbol);
+  const largest = values.reduce(
+    (/** @type {number} */ most, value) => Math.max(most, Math.abs(value ?? 0)),
+    0,
+  );
+  if (!found || largest / size < LARGE) return { symbol, size };
+  let step = PREFIXES.indexOf(found[1]);
+  let factor = 1;
+  while (largest / (size * factor) >= 1000 && step < PREFIXES.length - 1)
+    [step, factor] = [step + 1, factor * 1000];
+  return { symbol: PREFIXES[step] + found[2], size: size * factor };
 }
 
 /**
@@ -113,10 +160,11 @@ export function say(name, value, digits = 4) {
  * @returns {(value: unknown) => string}
  */
 export function sayer(name, digits = 4) {
-  const { symbol, size } = unit(name);
+  const usual = unit(name);
   return (value) => {
     if (value === null || value === undefined) return "–";
     if (typeof value !== "number") return String(value).replaceAll("_", " ");
+    const { symbol, size } = Math.abs(value) < LARGE * usual.size ? usual : suitedUnit(name, [value]);
     const text = number(value / size, digits);
     return symbol ? `${text} ${symbol}` : text;
   };
@@ -133,16 +181,29 @@ export function sayParameters(values) {
     .join(", ");
 }
 
+/** Between thousands: a narrow space at which no line breaks. */
+export const THOUSANDS = "\u202f";
+/** Numbers from here on are written by powers of ten. */
+const HUGE = 1e9;
+
 /**
- * A number in a few significant digits.
+ * A number in a few significant digits; those of five digits and more before the point have their thousands apart.
  * @param {number} value
  * @param {number} [digits]
  */
 export function number(value, digits = 4) {
-  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(digits - 1).replace("e+", "e");
-  return String(Number(value.toPrecision(digits)));
+  if (Number.isInteger(value) && size < 1e6) return grouped(String(value));
+  if (size !== 0 && (size < 1e-3 || size >= HUGE)) return value.toExponential(digits - 1).replace("e+", "e");
+  return grouped(String(Number(value.toPrecision(digits))));
+}
+
+/** @param {string} text of a number without an exponent */
+function grouped(text) {
+  const [whole, part] = text.split(".");
+  if (whole.replace("-", "").length < 5) return text;
+  const apart = whole.replace(/\B(?=(\d{3})+$)/g, THOUSANDS);
+  return part === undefined ? apart : `${apart}.${part}`;
 }
 
 /** @param {number} seconds */

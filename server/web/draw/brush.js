@@ -56,11 +56,12 @@ export function dragWindow(place, moved, ended, signal) {
     "pointerdown",
     (event) => {
       if (!isMine(event) || event.button !== 0) return;
-      const { yaxis } = layout();
+      // Across all panels over the axis of time.
+      const { t, h: height } = layout()._size;
       start = end = across(event);
       // Plotly, which would look for what is below the mouse, hears nothing while this place has the pointer.
       place.setPointerCapture(event.pointerId);
-      Object.assign(shade.style, { top: `${yaxis._offset}px`, height: `${yaxis._length}px`, width: "0" });
+      Object.assign(shade.style, { top: `${t}px`, height: `${height}px`, width: "0" });
       shade.hidden = false;
     },
     { signal },

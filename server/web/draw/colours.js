@@ -16,22 +16,63 @@ const STOPS = [
 const STEPS = 128;
 
 /** Colours from the least to the largest value. */
-const COLOURS = Array.from({ length: STEPS }, (_, step) => {
+const MIXED = Array.from({ length: STEPS }, (_, step) => {
   const place = (step / (STEPS - 1)) * (STOPS.length - 1);
   const below = Math.min(Math.floor(place), STOPS.length - 2);
-  const mixed = STOPS[below].map((value, part) =>
+  return STOPS[below].map((value, part) =>
     Math.round(value + (STOPS[below + 1][part] - value) * (place - below)),
   );
-  return `rgb(${mixed.join(",")})`;
 });
+const COLOURS = MIXED.map((mixed) => `rgb(${mixed.join(",")})`);
+/** Relative luminance at which black and white contrast equally (WCAG 2). */
+const MIDDLE = 0.179;
 
 /**
  * @param {number} value
  * @param {[number, number]} range of the scale; what lies beyond has the colour of its end
  */
-export function colourOf(value, [least, largest]) {
+export function colourOf(value, range) {
+  return COLOURS[stepOf(value, range)];
+}
+
+/**
+ * Black or white, whichever contrasts more with the colour of a value.
+ * @param {number} value
+ * @param {[number, number]} range of the scale
+ */
+export function inkOn(value, range) {
+  const [red, green, blue] = MIXED[stepOf(value, range)].map((part) => {
+    const share = part / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > MIDDLE ? BLACK : WHITE;
+}
+/** Inks of what is printed on colours, in either theme. */
+export const [BLACK, WHITE] = ["#000000", "#ffffff"];
+
+/** @param {number} value @param {[number, number]} range */
+function stepOf(value, [least, largest]) {
   const part = largest > least ? (value - least) / (largest - least) : 0.5;
-  return COLOURS[Math.max(0, Math.min(STEPS - 1, Math.round(part * (STEPS - 1))))];
+  return Math.max(0, Math.min(STEPS - 1, Math.round(part * (STEPS - 1))));
+}
+
+/** Variables of the style sheet that colour the states of points. @type {Record<string, string>} */
+const STATES = {
+  succeeded: "--good",
+  running: "--accent",
+  queued: "--wait",
+  failed: "--bad",
+  cancelled: "--stop",
+};
+
+/**
+ * Colour of a state in pictures, which is that of its word on the page.
+ * @param {string} word
+ * @returns {string | undefined} undefined of another word
+ */
+export function stateColour(word) {
+  if (!STATES[word]) return undefined;
+  return getComputedStyle(document.documentElement).getPropertyValue(STATES[word]).trim();
 }
 
 /** The scale as a gradient of CSS, from left to right. */

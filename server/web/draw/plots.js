@@ -2,6 +2,7 @@
 
 import { isWaiting } from "../data/api.js";
 import { settings, theme } from "../data/settings.js";
+import { THOUSANDS } from "../data/units.js";
 import { h } from "../ui/dom.js";
 import { colourOf } from "./colours.js";
 import { fetchAhead, isFlat, library, libraryAtHand } from "./library.js";
@@ -77,8 +78,8 @@ const adjusted = new WeakSet();
  * Draws, or redraws, a picture; zoomed as the link says, unless its axes are others than when it was drawn last.
  * @param {HTMLElement} place made by `canvas`
  * @param {any[]} traces
- * @param {any} layout what differs from the common layout; the `quantity` of an axis is what it shows, where that has a unit, and
- *   `shows` is what a change of takes the zoom back, beside that of the axes
+ * @param {any} layout what differs from the common layout; the `quantity` of an axis is what it shows, where that has a unit, its
+ *   `size` the number of served units in one that is shown, where that is not the usual one, and `shows` is what a change of takes the zoom back, beside that of the axes
  * @param {AbortSignal} signal of the view: the picture is taken down with it
  * @returns {Promise<any>} the picture, which has plotly's events
  */
@@ -87,7 +88,7 @@ export async function draw(place, traces, layout, signal) {
   asked.set(place, mine);
   await laidOut(place, signal);
   if (signal.aborted) return place;
-  const complete = merged(common(), layout);
+  const complete = merged(common(), layout, traces);
   // A sketch of a WebGL picture takes as long as the picture.
   if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces)))
     await sketched(place, traces, complete, signal);
@@ -205,7 +206,7 @@ function keyOf(place) {
  * @param {AbortSignal} signal
  * @returns {Promise<void>}
  */
-function laidOut(place, signal) {
+export function laidOut(place, signal) {
   return new Promise((resolve) => {
     const look = () =>
       signal.aborted || (place.isConnected && place.clientWidth > 0)
@@ -238,7 +239,6 @@ function common() {
     tickcolor: line,
     automargin: true,
     title: { standoff: 8, font: { size: 13 } },
-    exponentformat: "power",
   };
   return {
     paper_bgcolor: "rgba(0,0,0,0)",
@@ -246,6 +246,7 @@ function common() {
     font: { color: text, family: 'system-ui, "Segoe UI", "Noto Sans", sans-serif', size: 12 },
     margin: { l: 60, r: 16, t: 16, b: 50 },
     colorway: LINES,
+    separators: `.${THOUSANDS}`,
     hovermode: "closest",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: text },
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } },
@@ -258,8 +259,9 @@ function common() {
  * The common layout with a picture's own; every axis that it names has the common axis below it.
  * @param {any} base
  * @param {any} own
+ * @param {any[]} traces
  */
-function merged(base, own) {
+function merged(base, own, traces) {
   const { shows, ...layout } = own;
   const result = { ...base, ...layout };
   for (const name of new Set([
@@ -267,11 +269,35 @@ function merged(base, own) {
     "yaxis",
     ...Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)),
   ])) {
-    const { quantity, ...given } = layout[name] ?? {};
+    const { quantity, size, ...given } = layout[name] ?? {};
     const title = typeof given.title === "string" ? { text: given.title } : given.title;
-    result[name] = { ...base.xaxis, ...given, title: { ...base.xaxis.title, ...title } };
+    result[name] = {
+      ...base.xaxis,
+      exponentformat: exponentsOf(name, given, traces),
+      ...given,
+      title: { ...base.xaxis.title, ...title },
+    };
   }
   return result;
+}
+
+/** Least value that is written without a power of ten. */
+const WRITTEN = 1e-3;
+
+/**
+ * Form of an axis' numbers: powers of ten on a logarithmic axis and of tiny values, otherwise all digits.
+ * @param {string} name such as `xaxis2`
+ * @param {any} axis
+ * @param {any[]} traces
+ */
+export function exponentsOf(name, axis, traces) {
+  const [letter, key] = [name[0], name.replace("axis", "")];
+  const isWritten = (/** @type {any} */ value) =>
+    typeof value === "number" ? Math.abs(value) >= WRITTEN : Boolean(value);
+  const mine = traces.filter((trace) => (trace[`${letter}axis`] ?? letter) === key);
+  const isTiny =
+    mine.length > 0 && mine.every((trace) => !Array.prototype.some.call(trace[letter] ?? [], isWritten));
+  return axis.type === "log" || isTiny ? "power" : "none";
 }
 
 /** @param {any} Plotly @param {HTMLElement} place @param {any} layout */
@@ -330,7 +356,7 @@ export function colourBar(title) {
     thickness: 14,
     outlinewidth: 0,
     tickfont: { color: text },
-    exponentformat: "power",
+    exponentformat: "none",
   };
 }
 

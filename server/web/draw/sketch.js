@@ -54,7 +54,7 @@ export function sketch(place, traces, layout, inks) {
       bar: trace.marker?.colorbar ?? (trace.showscale === false ? undefined : trace.colorbar),
     }))
     .find((entry) => entry.bar);
-  const names = traces.filter((trace) => trace.showlegend);
+  const names = layout.showlegend === false ? [] : traces.filter((trace) => trace.showlegend);
   const frame = frameOf(pen, [...axes.values()], layout, width, height, {
     hasBar: bar !== undefined,
     hasNames: names.length > 0,
@@ -368,7 +368,7 @@ function drawLine(pen, trace, x, y) {
     pen.setLineDash([]);
   }
   if (!trace.mode.includes("markers")) return;
-  const { color, size = 6, colorscale, cmin, cmax } = trace.marker ?? {};
+  const { color, size = 6, symbol, colorscale, cmin, cmax } = trace.marker ?? {};
   const values = Array.isArray(color) ? color : null;
   const finite = values?.filter((value) => typeof value === "number") ?? [];
   const ends = (/** @type {(a: number, b: number) => number} */ of) =>
@@ -376,10 +376,12 @@ function drawLine(pen, trace, x, y) {
   const colour = colours(colorscale, cmin ?? ends(Math.min), cmax ?? ends(Math.max));
   for (let index = 0; index < count; index += 1) {
     if (!has(index) || (values && values[index] === null)) continue;
-    pen.fillStyle = values ? colour(values[index]) : (color ?? trace.line?.color);
+    const own = values && (typeof values[index] === "number" ? colour(values[index]) : values[index]);
+    pen.fillStyle = pen.strokeStyle = own ?? color ?? trace.line?.color;
     pen.beginPath();
     pen.arc(at(x, trace.x[index]), at(y, trace.y[index]), size / 2, 0, 2 * Math.PI);
-    pen.fill();
+    if (symbol === "circle-open") pen.stroke();
+    else pen.fill();
   }
 }
 

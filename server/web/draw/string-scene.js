@@ -3,6 +3,7 @@
 import { h } from "../ui/dom.js";
 import { colourOf } from "./colours.js";
 import { inks } from "./plots.js";
+import { seenFrom } from "./viewpoint.js";
 
 /** @typedef {import("../data/well-frames.js").Vector} Vector */
 
@@ -12,6 +13,9 @@ const [CORNERS, RINGS] = [28, 36];
 const [TURN, NEARER] = [0.08, 1.15];
 /** Marks of depth along the stretch that is shown, about, and pixels between two at least. */
 const [MARKS, BETWEEN] = [6, 16];
+/** Width of the string by its part, and length of the bit's cone [pixels]. @type {Record<import("../data/string-parts.js").Kind, number>} */
+const WIDTHS = { drillpipe: 3.5, tool_joint: 7, collar: 5.5, stabilizer: 10, bit: 10 };
+const CONE = 9;
 /** Radius of a dot. */
 const DOT = 4.5;
 
@@ -28,43 +32,17 @@ const DOT = 4.5;
  * @property {(node: number) => number} value that colours it
  * @property {[number, number]} range of the colours
  * @property {(node: number) => boolean} [isMarked] whether a node has a dot
+ * @property {import("../data/string-parts.js").Kind[]} kinds part of the string at each element
  */
 
-/** From where the string is seen: angles [rad], how near, and the shift as a part of the picture's width and height. */
-const USUAL = { azimuth: 0.7, elevation: 0.35, size: 1, right: 0, down: 0 };
-/** Digits of these in the link. */
-const DIGITS = 4;
-
-/**
- * @param {string} text of the link, as `sayView` makes it
- * @returns {typeof USUAL}
- */
-export function readView(text) {
-  const numbers = text.split(":").map(Number);
-  if (!text || numbers.length !== 5 || !numbers.every(Number.isFinite) || !(numbers[2] > 0))
-    return { ...USUAL };
-  const [azimuth, elevation, size, right, down] = numbers;
-  return { azimuth, elevation: Math.max(-Math.PI / 2, Math.min(Math.PI / 2, elevation)), size, right, down };
-}
-
-/**
- * A view as the link holds it; empty of the usual one.
- * @param {typeof USUAL} view
- */
-export function sayView(view) {
-  const text = [view.azimuth, view.elevation, view.size, view.right, view.down]
-    .map((value) => Number(value.toFixed(DIGITS)))
-    .join(":");
-  return text === Object.values(USUAL).join(":") ? "" : text;
-}
-
-/** @typedef {typeof USUAL} View */
+/** @typedef {import("./viewpoint.js").View} View */
 /** @typedef {import("./svg-pen.js").Pen} Pen */
 /** @typedef {(place: Vector) => number[]} Project */
 
 /** A picture that is turned by dragging or the arrow keys, and brought nearer by the wheel or + and -. */
 export class StringScene {
   #view;
+  #usual;
   #onView;
   #screen;
   /** @type {Scene | undefined} */
@@ -77,11 +55,13 @@ export class StringScene {
   /**
    * @param {string} name
    * @param {View} view from where the string is seen, which changes when the reader turns it
+   * @param {View} usual view that Home takes back
    * @param {() => void} onView called when the reader has turned it
    * @param {AbortSignal} signal
    */
-  constructor(name, view, onView, signal) {
+  constructor(name, view, usual, onView, signal) {
     this.#view = view;
+    this.#usual = usual;
     this.#onView = onView;
     this.element = h("canvas", {
       class: "scene",
@@ -179,7 +159,7 @@ export class StringScene {
       ArrowDown: () => this.#turn(0, -TURN),
       "+": () => (view.size *= NEARER),
       "-": () => (view.size /= NEARER),
-      Home: () => Object.assign(view, USUAL),
+      Home: () => Object.assign(view, this.#usual),
     };
     if (!keys[event.key]) return;
     event.preventDefault();
@@ -215,12 +195,7 @@ function drawAll(pen, scene, view, width, height) {
  * @returns {Project}
  */
 function projection({ frames, stretch: [first, last], clearance, factor }, view, width, height) {
-  const [cosine, sine] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];
-  const [up, flat] = [Math.cos(view.elevation), Math.sin(view.elevation)];
-  const seen = (/** @type {Vector} */ [north, east, down]) => {
-    const [right, away] = [east * cosine - north * sine, east * sine + north * cosine];
-    return [right, down * up - away * flat];
-  };
+  const seen = seenFrom(view);
   const bounds = [Infinity, -Infinity, Infinity, -Infinity];
   for (let node = first; node <= last; node += 1) {
     const [x, y] = seen(frames.axis[node]);
@@ -348,36 +323,59 @@ function drawLine(pen, { frames, stretch: [first, last], factor }, place, projec
 }
 
 /** @param {Pen} pen @param {Scene} scene @param {Project} project */
-function drawString(pen, { frames, stretch: [first, last], factor, place, value, range, isMarked }, project) {
-  const at = (/** @type {number} */ node) => {
-    const [u, v] = place(node);
-    return project(offset(frames, node, factor * u, factor * v));
-  };
-  // Whatever its colour, it stands out from the ground of either theme.
-  pen.lineCap = "round";
-  pen.lineWidth = 6.5;
-  pen.globalAlpha = 0.35;
-  pen.strokeStyle = inks().text;
-  path(pen, first, last, at);
-  pen.globalAlpha = 1;
-  pen.lineWidth = 4;
-  /** @type {number[][]} */
-  const dots = [];
-  let before;
-  for (let node = first; node <= last; node += 1) {
-    const here = at(node);
-    if (before) {
-      pen.strokeStyle = colourOf(value(node), range);
-      pen.beginPath();
-      pen.moveTo(before[0], before[1]);
-      pen.lineTo(here[0], here[1]);
-      pen.stroke();
+function drawString(pen, scene, project) {
+  const {
+    frames,
+    stretch: [first, last],
+    factor,
+    place,
+    value,
+    range,
+    isMarked,
+    kinds,
+  } = scene;
+  const places = Array.from({ length: last - first + 1 }, (_, index) => {
+    const [u, v] = place(first + index);
+    return project(offset(frames, first + index, factor * u, factor * v));
+  });
+  const strokes = (/** @type {number} */ wider, /** @type {(node: number) => string} */ colour) => {
+    for (let index = 1; index < places.length; index += 1) {
+      const node = first + index;
+      pen.lineWidth = WIDTHS[kinds[node - 1]] + wider;
+      pen.strokeStyle = colour(node);
+      path(pen, index - 1, index, (at) => places[at]);
     }
-    if (isMarked?.(node)) dots.push([here[0], here[1], value(node)]);
-    before = here;
-  }
+  };
+  pen.lineCap = "round";
+  // Whatever its colour, it stands out from the ground of either theme.
+  const ink = inks().soft;
+  strokes(2.5, () => ink);
+  strokes(0, (node) => colourOf(value(node), range));
   pen.lineCap = "butt";
+  if (last === frames.axis.length - 1) drawBit(pen, places, colourOf(value(last), range));
+  const dots = places.flatMap(([x, y], index) =>
+    isMarked?.(first + index) ? [[x, y, value(first + index)]] : [],
+  );
   drawDots(pen, dots, range);
+}
+
+/** Draws the bit as a cone at the end of the string. @param {Pen} pen @param {number[][]} places @param {string} colour */
+function drawBit(pen, places, colour) {
+  const [[x0, y0], [x1, y1]] = places.slice(-2);
+  const length = Math.hypot(x1 - x0, y1 - y0);
+  if (!length) return;
+  const [along, across] = [(x1 - x0) / length, (y1 - y0) / length];
+  const half = WIDTHS.bit / 2;
+  pen.beginPath();
+  pen.moveTo(x1 - half * across, y1 + half * along);
+  pen.lineTo(x1 + half * across, y1 - half * along);
+  pen.lineTo(x1 + CONE * along, y1 + CONE * across);
+  pen.lineTo(x1 - half * across, y1 + half * along);
+  pen.fillStyle = colour;
+  pen.fill();
+  pen.lineWidth = 1;
+  pen.strokeStyle = inks().text;
+  pen.stroke();
 }
 
 /** @param {Pen} pen @param {number[][]} dots places and values @param {[number, number]} range of the colours */
@@ -404,27 +402,28 @@ function path(pen, first, last, at) {
   pen.stroke();
 }
 
+/** Least length of a direction in the corner, as a part of the whole. */
+const SHORTEST = 0.15;
+
 /** Draws north, east and down in a corner. @param {Pen} pen @param {View} view @param {number} height */
 function drawCompass(pen, view, height) {
   const { text, soft } = inks();
-  const [cosine, sine, up, flat] = [
-    Math.cos(view.azimuth),
-    Math.sin(view.azimuth),
-    Math.cos(view.elevation),
-    Math.sin(view.elevation),
-  ];
+  const seen = seenFrom(view);
   const [x, y, length] = [46, height - 46, 26];
   pen.lineWidth = 1.5;
   pen.font = "12px system-ui, sans-serif";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  /** @type {[string, number, number][]} */
+  /** @type {[string, Vector][]} */
   const directions = [
-    ["N", -sine, -cosine * flat],
-    ["E", cosine, -sine * flat],
-    ["down", 0, up],
+    ["N", [1, 0, 0]],
+    ["E", [0, 1, 0]],
+    ["down", [0, 0, 1]],
   ];
-  for (const [name, right, lower] of directions) {
+  for (const [name, direction] of directions) {
+    const [right, lower] = seen(direction);
+    // What points at the reader or away has no place.
+    if (Math.hypot(right, lower) < SHORTEST) continue;
     pen.strokeStyle = soft;
     pen.fillStyle = text;
     pen.beginPath();

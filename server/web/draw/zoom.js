@@ -125,5 +125,5 @@ function cameraOf(place) {
 
 /** Size of an axis' unit in the served unit. @param {any} axis */
 function sizeOf(axis) {
-  return axis.quantity ? unit(axis.quantity).size : 1;
+  return axis.size ?? (axis.quantity ? unit(axis.quantity).size : 1);
 }

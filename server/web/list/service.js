@@ -72,7 +72,7 @@ function failuresPart(failed) {
       ),
       h(
         "div",
-        { class: "small soft brief", title: point.error?.reason },
+        { class: "small soft reason" },
         when(point.at),
         ` ${point.error?.class ?? "failed"}: ${point.error?.reason ?? "no reason is known"}`,
       ),

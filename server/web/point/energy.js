@@ -1,6 +1,6 @@
 // Energy by account: what was put in, where it went, and what the ledger misses.
 
-import { label, say, shown, unit } from "../data/units.js";
+import { label, say, suitedUnit } from "../data/units.js";
 import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
 
@@ -71,7 +71,7 @@ export function energy(context) {
 function drawBars(place, columns, signal) {
   const { accounts, change } = ledger(columns);
   const backwards = accounts.toReversed();
-  const { symbol } = unit("kinetic");
+  const { symbol, size } = suitedUnit("kinetic", accounts.map(change));
   const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
     const names = backwards.filter((account) => groupOf(account) === group);
     return {
@@ -79,7 +79,7 @@ function drawBars(place, columns, signal) {
       orientation: "h",
       name,
       y: names.map(label),
-      x: names.map((account) => shown(account, [change(account)])[0]),
+      x: names.map((account) => change(account) / size),
       marker: { color: LINES[group] },
       showlegend: true,
       text: names.map((account) => say(account, change(account), 3)),
@@ -88,7 +88,7 @@ function drawBars(place, columns, signal) {
       hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>`,
     };
   });
-  const values = accounts.map((account) => Number(shown(account, [change(account)])[0]));
+  const values = accounts.map((account) => change(account) / size);
   const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
   // Numbers stand beyond the ends of bars.
   const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (place.clientWidth || USUAL) - NAMES));
@@ -96,6 +96,7 @@ function drawBars(place, columns, signal) {
   const xaxis = {
     title: `energy [${symbol}]`,
     quantity: backwards[0],
+    size,
     range: [least < 0 ? least - room : 0, largest + room],
   };
   const yaxis = { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) };
@@ -105,7 +106,10 @@ function drawBars(place, columns, signal) {
 /** Draws the accounts over time. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
 function drawCurves(place, columns, signal) {
   const { accounts } = ledger(columns);
-  const { symbol } = unit("kinetic");
+  const { symbol, size } = suitedUnit(
+    "kinetic",
+    accounts.flatMap((name) => columns[name]),
+  );
   const traces = accounts.map((name, order) => {
     const dash = DASHES[Math.floor(order / LINES.length) + (groupOf(name) === 2 ? 1 : 0)];
     return {
@@ -113,7 +117,7 @@ function drawCurves(place, columns, signal) {
       mode: "lines",
       name: label(name),
       x: columns.time,
-      y: shown(name, columns[name]),
+      y: scaled(columns[name], size),
       line: { color: LINES[order % LINES.length], dash, width: 1.4 },
       showlegend: true,
       hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>`,
@@ -124,9 +128,14 @@ function drawCurves(place, columns, signal) {
     traces,
     {
       xaxis: { title: "time [s]" },
-      yaxis: { title: `energy since the start [${symbol}]`, quantity: accounts.at(-1) },
+      yaxis: { title: `energy since the start [${symbol}]`, quantity: accounts.at(-1), size },
       hovermode: "x",
     },
     signal,
   );
+}
+
+/** Values by a size of their unit; gaps stay gaps. @param {(number | null)[]} values @param {number} size */
+export function scaled(values, size) {
+  return values.map((value) => (value === null ? null : value / size));
 }

@@ -1,6 +1,6 @@
 // Controls of the motion of a node.
 
-import { rangesOf } from "../data/motion-requests.js";
+import { nodeInLink, rangesOf } from "../data/motion-requests.js";
 import { say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 
@@ -60,8 +60,8 @@ export class MotionControls {
       this.element,
       choice(
         "Node",
-        nodes.map((/** @type {any} */ node, /** @type {number} */ index) => [String(index), nodeName(node)]),
-        query.get("node") ?? "0",
+        nodes.map((/** @type {any} */ node) => [nodeInLink(node), nodeName(node)]),
+        query.get("node") ?? nodeInLink(nodes[0]),
         set("node"),
       ),
       entry("From", this.#from),

@@ -19,6 +19,7 @@ import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { MotionChoices } from "./motion-choices.js";
 import { MotionControls } from "./motion-controls.js";
+import { sayUnrecorded } from "./part.js";
 import { SpectralLines } from "./spectral-lines.js";
 
 /** Rest of a dragged window before its samples are requested. */
@@ -163,6 +164,8 @@ class NodeMotion {
   async redraw() {
     const { point, query, table } = this.#context;
     const isNewest = this.#beginNode();
+    const refusal = sayUnrecorded(point.scenario, query);
+    if (refusal) return this.#refuse(refusal);
     // The window of another node is not waited for any more.
     const isWindow = this.#beginWindow();
     const asked = this.#tablesOf(this.choices.window);

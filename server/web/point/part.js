@@ -1,5 +1,7 @@
 // Common to the views of a point.
 
+import { nodeInLink, unrecordedNode } from "../data/motion-requests.js";
+
 /**
  * Data and callbacks for a view of a point.
  * @typedef {object} PointContext
@@ -20,6 +22,30 @@
  * A table is a path from that of the point; that of the point itself is empty.
  * @typedef {{asked: {table: string, query?: Record<string, any>, isDocument?: boolean, name?: string}[], python: string}} PartRequest
  */
+
+/**
+ * Sentence about a node of the link that was not recorded; empty if it was.
+ * @param {any} scenario
+ * @param {URLSearchParams} query of the link
+ */
+export function sayUnrecorded(scenario, query) {
+  const asked = unrecordedNode(scenario, query);
+  if (!asked) return "";
+  const words = (/** @type {string} */ name) =>
+    name.endsWith("m") ? `at ${name.slice(0, -1)} m` : `node ${name}`;
+  const recorded = scenario.recording.nodes.map((/** @type {any} */ node) => words(nodeInLink(node)));
+  return `This point did not record ${/^\d/.test(asked) ? words(asked) : asked}. It recorded ${recorded.join(", ")}: choose one of them.`;
+}
+
+/** Choices that other views of the point, and other points, take over. */
+const CARRIED = ["node", "from", "to"];
+
+/** @param {URLSearchParams} query of the link @returns {Record<string, string>} node and window, as far as the link has them */
+export function carried(query) {
+  return Object.fromEntries(
+    CARRIED.flatMap((name) => (query.has(name) ? [[name, query.get(name) ?? ""]] : [])),
+  );
+}
 
 /**
  * The requests of a part with their paths from `/v1`.

@@ -216,7 +216,7 @@ export function rotation(context) {
 }
 
 /** Rotation speed above torque over one axis of time. */
-export function twoPanels() {
+function twoPanels() {
   return {
     xaxis: { title: "time [s]", anchor: "y2" },
     yaxis: { title: title("rotation_speed"), quantity: "rotation_speed", domain: [0.54, 1] },

@@ -1,11 +1,13 @@
 // The full spectrum of a recorded node over time, forward and backward.
 
 import { Problem } from "../data/api.js";
+import { nodeInLink, selectedNode } from "../data/motion-requests.js";
 import { say, shown, title, unit } from "../data/units.js";
 import { canvas, colourBar, draw, inks, logTicks, SCALE } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { pythonNode } from "../ui/snippets.js";
+import { sayUnrecorded } from "./part.js";
 
 /** Frequencies up to which spectrograms are shown [Hz]. */
 export const RANGES = ["5", "10", "20", "50", "100"];
@@ -25,7 +27,7 @@ class Choices {
   }
 
   get node() {
-    return this.#query.get("node") ?? "0";
+    return this.#query.get("node") ?? nodeInLink(this.#nodes[0]);
   }
 
   /** Highest frequency [Hz]. */
@@ -44,11 +46,8 @@ class Choices {
 
   /** Query of the table. */
   asks() {
-    const asked = this.#nodes[Number(this.#query.get("node") ?? 0)] ?? this.#nodes[0];
-    const selector =
-      asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
     return {
-      ...selector,
+      ...selectedNode({ recording: { nodes: this.#nodes } }, this.#query),
       range_hz: Number(this.range),
       ...(this.length ? { window_s: Number(this.length) } : {}),
     };
@@ -83,7 +82,8 @@ export function spectrogram(context) {
   async function redraw() {
     fill(controls, controlsPart(nodes, choices, set));
     const mine = ++generation;
-    wrong.textContent = "";
+    wrong.textContent = sayUnrecorded(context.point.scenario, context.query);
+    if (wrong.textContent) return;
     let table;
     try {
       table = await context.table("spectrogram", choices.asks());
@@ -129,8 +129,8 @@ function controlsPart(nodes, choices, set) {
   return [
     choice(
       "Node",
-      nodes.map((node, index) => [
-        String(index),
+      nodes.map((node) => [
+        nodeInLink(node),
         node.node !== undefined ? String(node.node) : say("measured_depth", node.depth),
       ]),
       choices.node,

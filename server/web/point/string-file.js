@@ -3,7 +3,7 @@
 import { colourOf } from "../draw/colours.js";
 import { inks } from "../draw/plots.js";
 import { SvgPen } from "../draw/svg-pen.js";
-import { h } from "../ui/dom.js";
+import { download, h } from "../ui/dom.js";
 
 /** Height of the scale below the picture, and cells of its colours. */
 const [SCALE_HEIGHT, CELLS] = [44, 120];
@@ -62,15 +62,4 @@ function drawFile(pen, actors, words, width, height) {
     pen.fillStyle = colourOf(cell, [0, CELLS - 1]);
     pen.fillRect(left + ((right - left) * cell) / CELLS, middle - 6, (right - left) / CELLS + 0.5, 12);
   }
-}
-
-/**
- * Gives the reader a file.
- * @param {Blob} blob
- * @param {string} name
- */
-function download(blob, name) {
-  const url = URL.createObjectURL(blob);
-  h("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

@@ -1,10 +1,12 @@
 // Strings moving in their holes, played from snapshots on one clock: the string of a point, or several side by side.
 
 import { frames, valueAt } from "../data/snapshots.js";
+import { kindsOf, partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { nodeFrames } from "../data/well-frames.js";
 import { GRADIENT } from "../draw/colours.js";
-import { readView, sayView, StringScene } from "../draw/string-scene.js";
+import { StringScene } from "../draw/string-scene.js";
+import { freeView, planView, readView, roundedView, sayView, sectionView } from "../draw/viewpoint.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { BEYOND } from "./contacts.js";
@@ -20,7 +22,7 @@ const REST_MS = 200;
 
 /**
  * One string with its picture.
- * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, motion: Frames | null, colours: import("./string-colours.js").Colours, scene: StringScene}} Actor
+ * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, colours: import("./string-colours.js").Colours, scene: StringScene}} Actor
  */
 
 export class StringPlayer {
@@ -31,6 +33,9 @@ export class StringPlayer {
   #keep;
   #signal;
   #keepTime;
+  /** Shows the strings from a viewpoint. @type {(view: import("../draw/viewpoint.js").View) => void} */
+  #turnTo;
+  #section;
   #controls = h("div", { class: "controls" });
   #wrong = h("p", { class: "wrong", role: "alert" });
   #legend = h("div", { class: "scale" });
@@ -63,8 +68,11 @@ export class StringPlayer {
     this.#onLoad = onLoad;
     this.#keep = keep;
     this.#signal = signal;
-    const view = readView(query.get("turn") ?? "");
-    const keepView = debounced(() => keep({ turn: sayView(view) || null }), REST_MS, signal);
+    const geometries = strings.map(({ statics }) => nodeFrames(statics));
+    // Several strings are seen from one place: that of the first one's section.
+    const usual = roundedView(sectionView(geometries[0].axis));
+    const view = readView(query.get("turn") ?? "", usual);
+    const keepView = debounced(() => keep({ turn: sayView(view, usual) || null }), REST_MS, signal);
     this.#keepTime = debounced(
       () =>
         this.#isPlaying ||
@@ -76,14 +84,21 @@ export class StringPlayer {
       for (const { scene } of this.#actors) scene.turned();
       keepView();
     };
-    this.#actors = strings.map((one) => ({
+    this.#turnTo = (to) => {
+      Object.assign(view, to);
+      turned();
+    };
+    this.#section = usual;
+    this.#actors = strings.map((one, order) => ({
       ...one,
-      geometry: nodeFrames(one.statics),
+      geometry: geometries[order],
+      kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
       motion: null,
       colours: { value: () => 0, range: [0, 1] },
       scene: new StringScene(
         `The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`,
         view,
+        usual,
         turned,
         signal,
       ),
@@ -172,6 +187,7 @@ export class StringPlayer {
       this.#entry("to depth", "bottom", depths.to, "measured_depth", show),
       this.#entry("From", "from", span.from, "time", load),
       this.#entry("to", "to", span.to, "time", load),
+      this.#viewpoints(),
       h(
         "button",
         { onclick: () => this.#save("png"), "aria-label": "Save the string as PNG" },
@@ -182,6 +198,21 @@ export class StringPlayer {
         { onclick: () => this.#save("svg"), "aria-label": "Save the string as SVG" },
         "Save as SVG",
       ),
+    );
+  }
+
+  /** Buttons for viewpoints. */
+  #viewpoints() {
+    /** @type {[string, import("../draw/viewpoint.js").View][]} */
+    const views = [
+      ["Section", this.#section],
+      ["Plan", roundedView(planView())],
+      ["Free view", freeView()],
+    ];
+    return h(
+      "span",
+      { role: "group", "aria-label": "Viewpoint", style: "display:flex;gap:.3rem" },
+      views.map(([text, view]) => h("button", { onclick: () => this.#turnTo(view) }, text)),
     );
   }
 
@@ -280,7 +311,7 @@ export class StringPlayer {
     });
     fill(
       this.#caption,
-      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
+      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Tool joints, collars and stabilizers are wider than pipe; the cone is the bit. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
     );
   }
 
@@ -290,7 +321,7 @@ export class StringPlayer {
       depths: { from, to },
       factor,
     } = this.#choices;
-    for (const { motion, statics, scene, geometry, colours } of this.#actors) {
+    for (const { motion, statics, scene, geometry, colours, kinds } of this.#actors) {
       if (!motion) continue;
       const depth = statics.measured_depth;
       const upper = Math.max(
@@ -300,6 +331,7 @@ export class StringPlayer {
       const lower = depth.findIndex((/** @type {number} */ value) => value >= to);
       scene.show({
         frames: geometry,
+        kinds,
         clearance: statics.clearance,
         depth: { values: shown("measured_depth", depth).map(Number), symbol: unit("measured_depth").symbol },
         stretch: [

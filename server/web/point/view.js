@@ -8,7 +8,7 @@ import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { keep, link } from "../ui/router.js";
 import { requestLines, snippets } from "../ui/snippets.js";
-import { askedOf } from "./part.js";
+import { askedOf, carried } from "./part.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */
 
@@ -48,11 +48,12 @@ export async function show(main, route, signal) {
   const biases = new Biases();
   await biases.load(sweep, signal);
   const place = { sweep, ordinal, path, query: route.query };
+  const title = `Point ${ordinal} of ${sweep.name ?? `Sweep ${id.slice(-8)}`}`;
   const heading = h("div", {});
-  fill(heading, headingPart(place, point));
   if (!point.summary) {
+    fill(heading, headingPart(place, point));
     showWaiting(main, heading, place, point, signal);
-    return `Point ${ordinal}`;
+    return title;
   }
 
   const taken = snippets(() => {
@@ -62,17 +63,19 @@ export async function show(main, route, signal) {
     return requestLines(askedOf(path, request), start + request.python);
   });
   const drawn = () => taken.dispatchEvent(new Event("redraw"));
-  const part = make(contextOf(place, point, biases, drawn, signal));
   const tabs = PARTS.map(([entry, text]) =>
-    h(
-      "a",
-      {
-        href: link(["sweeps", id, "points", ordinal], { view: entry }),
-        "aria-current": entry === view && "page",
-      },
-      text,
-    ),
+    h("a", { "data-view": entry, "aria-current": entry === view && "page" }, text),
   );
+  const follow = (/** @type {URLSearchParams} */ query) => {
+    for (const tab of tabs)
+      tab.setAttribute(
+        "href",
+        link(["sweeps", id, "points", ordinal], { view: tab.dataset.view, ...carried(query) }),
+      );
+    fill(heading, headingPart({ ...place, query }, point));
+  };
+  follow(route.query);
+  const part = make(contextOf(place, point, biases, { drawn, follow }, signal));
   fill(
     main,
     heading,
@@ -89,18 +92,18 @@ export async function show(main, route, signal) {
       h("p", { class: "empty", role: "alert" }, error instanceof Error ? error.message : String(error)),
     );
   });
-  return `Point ${ordinal}`;
+  return `${title}, ${name}`;
 }
 
 /**
  * @param {Place} place
  * @param {any} point
  * @param {Biases} biases
- * @param {() => void} drawn
+ * @param {{drawn: () => void, follow: (query: URLSearchParams) => void}} page called for other requests, and for other choices in the link
  * @param {AbortSignal} signal
  * @returns {PointContext}
  */
-function contextOf({ ordinal, path, query: asked }, point, biases, drawn, signal) {
+function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, follow }, signal) {
   const query = new URLSearchParams(asked);
   return {
     point,
@@ -112,6 +115,7 @@ function contextOf({ ordinal, path, query: asked }, point, biases, drawn, signal
         else query.set(key, value);
       }
       keep(changes);
+      follow(query);
       drawn();
     },
     bias: (name) => biases.beside(name, Number(ordinal)),
@@ -163,7 +167,7 @@ function headingPart({ sweep, ordinal, query }, point) {
       )
     );
   };
-  const compare = waysToCompare(`${sweep.id}:${ordinal}`).map(({ text, href }) =>
+  const compare = waysToCompare(`${sweep.id}:${ordinal}`, carried(query)).map(({ text, href }) =>
     h("a", { class: "button", href }, text),
   );
   return [

@@ -54,7 +54,7 @@ export function well(context) {
     await draw(
       place,
       wellTraces(statics, name, values, factor()),
-      { showlegend: false, ...spaceLayout() },
+      { showlegend: false, ...spaceLayout(statics) },
       context.signal,
     );
   }
@@ -127,9 +127,20 @@ function wellTraces(statics, name, values, factor) {
   ];
 }
 
-/** Layout of a picture of wells in space. */
-export function spaceLayout() {
+/** Distance of the camera, in sizes of the picture. */
+const [CAMERA, ABOVE] = [2.2, 0.15];
+
+/**
+ * Layout of a picture of wells in space, seen as a vertical section: from the side of the plane through both ends of a well.
+ * @param {{north: number[], east: number[]}} statics
+ * @param {number} [above] height of the camera over the middle, in the same unit
+ */
+export function spaceLayout({ north, east }, above = ABOVE) {
   const { soft, line } = inks();
+  const reach = (/** @type {number[]} */ values) => values[values.length - 1] - values[0];
+  const along = { north: reach(north), east: reach(east) };
+  const length = Math.hypot(along.north, along.east) || 1;
+  if (!along.north && !along.east) along.east = 1;
   const axis = (/** @type {string} */ text) => ({
     title: { text: `${text} [${unit("north").symbol}]` },
     gridcolor: line,
@@ -144,7 +155,7 @@ export function spaceLayout() {
       yaxis: axis("north"),
       zaxis: { ...axis("true vertical depth"), autorange: "reversed" },
       aspectmode: "data",
-      camera: { eye: { x: 1.75, y: -1.75, z: 0.8 } },
+      camera: { eye: { x: (CAMERA * along.north) / length, y: (-CAMERA * along.east) / length, z: above } },
     },
   };
 }

@@ -2,9 +2,12 @@
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
+import { ends } from "../data/grid-layers.js";
 import { distinct, SHORT, SweepTable, sweptBy } from "../data/sweep-table.js";
 import { label, number, say, title, unit } from "../data/units.js";
-import { canvas, colourBar, DASHES, draw, LINES } from "../draw/plots.js";
+import { BLACK, WHITE } from "../draw/colours.js";
+import { canvas, colourBar, DASHES, draw, laidOut, LINES } from "../draw/plots.js";
+import { sampledRange, sampleTraces } from "../draw/samples.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -79,7 +82,7 @@ class Difference {
   others() {
     const other = this.#other;
     if (!other || this.#context.query.get("with") !== other.sweep.id) return [];
-    return [{ id: other.sweep.id, path: other.table.path, fields: this.fields.theirs }];
+    return [{ id: other.sweep.id, path: other.table.path, fields: other.table.served(this.fields.theirs) }];
   }
 
   /** @param {string} name of a choice in the link */
@@ -193,7 +196,7 @@ class Difference {
   /** @param {Shown} shown @param {string[]} axes @param {string[]} results */
   #columnChoices({ x, y, colour }, axes, results) {
     const options = (/** @type {string[]} */ names) =>
-      names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+      names.map((name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]));
     return [
       choice("Across", options(axes), x, this.#set("x")),
       y && choice("Up", options(axes.filter((axis) => axis !== x)), y, this.#set("y")),
@@ -279,6 +282,8 @@ class Difference {
     const { x, y, colour } = shown;
     const context = this.#context;
     const symbol = this.#isRelative ? "%" : unit(colour).symbol;
+    // The size decides whether values are printed.
+    await laidOut(this.#place, context.signal);
     this.#describe(pairs, shown, other, symbol);
     this.#place.setAttribute(
       "aria-label",
@@ -297,13 +302,32 @@ class Difference {
       type: context.spans[of]?.scale === "log" ? "log" : "linear",
     });
     const traces = y
-      ? [cellTrace(pairs, x, y, name, told)]
+      ? [
+          cellTrace(pairs, { x, y, spans: context.spans }, name, told),
+          ...sampleTraces(samplesOf(pairs, x, y, told), this.#place),
+        ]
       : lineTraces(pairs, x, colour, [nameOf(context.sweep), nameOf(other.sweep)], told);
+    const about = (/** @type {string} */ of, /** @type {number[]} */ values) => ({
+      ...axis(of),
+      range: sampledRange(
+        values.map((value) => value / unit(of).size),
+        context.spans[of]?.scale === "log",
+      ),
+    });
     const layout = y
-      ? { xaxis: axis(x), yaxis: axis(y) }
+      ? {
+          xaxis: about(
+            x,
+            pairs.map((pair) => pair.x),
+          ),
+          yaxis: about(
+            y,
+            pairs.map((pair) => pair.y),
+          ),
+        }
       : {
           xaxis: axis(x),
-          yaxis: { title: title(colour), quantity: colour, domain: [0.45, 1] },
+          yaxis: { title: context.depths.title(colour), quantity: colour, domain: [0.45, 1] },
           yaxis2: { title: name, ...(this.#isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
         };
     const shape = await draw(this.#place, traces, layout, context.signal);
@@ -433,24 +457,22 @@ function hoverText(pair, { x, y, colour }, symbol, mine, theirs) {
 
 /**
  * Differences over two parameters as cells.
- * @param {Pair[]} pairs @param {string} x @param {string} y @param {string} name of the difference
+ * @param {Pair[]} pairs @param {{x: string, y: string, spans: Record<string, any>}} axes @param {string} name of the difference
  * @param {{text: string[], keys: string[]}} told
  */
-function cellTrace(pairs, x, y, name, { text, keys }) {
-  const across = distinct(pairs.map((pair) => pair.x));
-  const up = distinct(pairs.map((pair) => pair.y));
-  const placeOf = (/** @type {(number | string)[]} */ values) =>
-    new Map(values.map((value, index) => [value, index]));
-  const [columns, lines] = [placeOf(across), placeOf(up)];
+function cellTrace(pairs, { x, y, spans }, name, { text, keys }) {
+  const across = distinct(pairs.map((pair) => pair.x)).map(Number);
+  const up = distinct(pairs.map((pair) => pair.y)).map(Number);
+  const [columns, lines] = [ranksOf(across), ranksOf(up)];
   const grid = (/** @type {any} */ filler) => up.map(() => Array(across.length).fill(filler));
   const [cells, hover, points] = [grid(null), grid(""), grid(null)];
   pairs.forEach((pair, index) => {
     const [row, column] = [lines.get(pair.y) ?? 0, columns.get(pair.x) ?? 0];
     [cells[row][column], hover[row][column], points[row][column]] = [pair.change, text[index], keys[index]];
   });
-  const largest = pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
-  const at = (/** @type {string} */ axis, /** @type {(number | string)[]} */ values) =>
-    values.map((value) => Number(value) / unit(axis).size);
+  const largest = largestOf(pairs);
+  const at = (/** @type {string} */ axis, /** @type {number[]} */ values) =>
+    ends(values, values, spans[axis]?.scale === "log").map((value) => value / unit(axis).size);
   return {
     type: "heatmap",
     x: at(x, across),
@@ -467,6 +489,38 @@ function cellTrace(pairs, x, y, name, { text, keys }) {
     xgap: 1,
     ygap: 1,
   };
+}
+
+/** @param {number[]} values in order @returns {Map<number, number>} the place of each among them */
+function ranksOf(values) {
+  return new Map(values.map((value, index) => [value, index]));
+}
+
+/** Largest difference, which has the darkest colour. @param {Pair[]} pairs */
+function largestOf(pairs) {
+  return pairs.reduce((most, { change }) => Math.max(most, Math.abs(change)), 0) || 1;
+}
+
+/** Part of the largest difference beyond which white is seen better on its colour. */
+const DARK = 0.6;
+
+/** @param {Pair[]} pairs @param {string} x @param {string} y @param {{text: string[], keys: string[]}} told @returns {import("../draw/samples.js").Sample[]} */
+function samplesOf(pairs, x, y, { text, keys }) {
+  const [columns, rows] = [
+    ranksOf(distinct(pairs.map((pair) => pair.x)).map(Number)),
+    ranksOf(distinct(pairs.map((pair) => pair.y)).map(Number)),
+  ];
+  const largest = largestOf(pairs);
+  return pairs.map((pair, index) => ({
+    x: pair.x / unit(x).size,
+    y: pair.y / unit(y).size,
+    column: columns.get(pair.x) ?? 0,
+    row: rows.get(pair.y) ?? 0,
+    value: pair.change,
+    ink: Math.abs(pair.change) > DARK * largest ? WHITE : BLACK,
+    text: text[index],
+    key: keys[index],
+  }));
 }
 
 /**

@@ -1,11 +1,25 @@
 // A column of the table over two swept parameters, the others held; over one, a line.
 
 import { ends, layered } from "../data/grid-layers.js";
+import { theme } from "../data/settings.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
-import { adjust, canvas, colourBar, draw, inks, lineScale, LINES, logTicks, SCALE } from "../draw/plots.js";
+import { BLACK, inkOn, stateColour, WHITE } from "../draw/colours.js";
+import {
+  adjust,
+  canvas,
+  colourBar,
+  draw,
+  inks,
+  laidOut,
+  lineScale,
+  LINES,
+  logTicks,
+  SCALE,
+} from "../draw/plots.js";
 import { keyboard } from "../draw/point-cursor.js";
+import { extremes, sampledRange, sampleTraces } from "../draw/samples.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -78,7 +92,7 @@ class SweepMap {
   constructor(context) {
     this.#context = context;
     this.#region = new FinerGrid(context);
-    this.#cursor = keyboard(this.#place, context.open);
+    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context).colour));
     this.#figure = h("figure", {}, this.#place, this.#caption, this.#cursor.element);
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
     this.#region.element.addEventListener("closed", () => {
@@ -123,6 +137,9 @@ class SweepMap {
       return;
     }
     this.#describe(chosen, slice);
+    // The size decides whether values are printed.
+    await laidOut(this.#place, context.signal);
+    if (!isNewest()) return;
     await (chosen.y === undefined
       ? this.#drawLine(chosen, slice)
       : this.#drawArea({ ...chosen, y: chosen.y }, slice));
@@ -136,7 +153,7 @@ class SweepMap {
       attend(this.redraw(), this.#context.signal);
     };
     const named = (/** @type {string[]} */ names) =>
-      names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+      names.map((name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]));
     const words = isText(values);
     return [
       choice("Across", named(axes), x, set("x")),
@@ -192,8 +209,9 @@ class SweepMap {
   }
 
   /** @param {Chosen} chosen @param {Slice} slice */
-  #describe({ x, y, colour, isLog }, { rows, values }) {
-    const { depths, biases } = this.#context;
+  #describe({ x, y, colour, isLog, style }, slice) {
+    const { rows, values, isGrid, ordinals } = slice;
+    const { depths, biases, sweep } = this.#context;
     const done = rows.filter((index) => values[index] !== null).length;
     const hidden =
       isLog && !isText(values)
@@ -202,6 +220,12 @@ class SweepMap {
     fill(
       this.#caption,
       `${depths.label(colour)}: ${done} of ${rows.length} points have a value. Select a point to open it, or go over them by arrow keys and open by Enter. `,
+      y !== undefined &&
+        isGrid &&
+        (style === "contour" && !isText(values)
+          ? "The dots are samples; colours and lines between them are interpolated. "
+          : "Each cell has the colour of the sample in it. "),
+      y !== undefined && isGrid && ringsPart(sweep.id, colour, { rows, values, ordinals }),
       biases.say(colour),
       hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "",
     );
@@ -262,8 +286,22 @@ class SweepMap {
     const texts = textsOf(this.#context, chosen, slice);
     const at = scaled([x, y, colour]);
     const colours = coloursOf(this.#context, chosen, slice, at);
+    const [columnOf, rowOf] = [xs, ys].map(
+      (column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])),
+    );
+    const places = rows.map((index, position) => ({
+      x: at(x, xs[index]),
+      y: at(y, ys[index]),
+      column: columnOf.get(/** @type {number} */ (xs[index])) ?? 0,
+      row: rowOf.get(/** @type {number} */ (ys[index])) ?? 0,
+      ordinal: Number(ordinals[index]),
+      text: texts[position],
+    }));
     const traces = slice.isGrid
-      ? cellTraces(this.#context, chosen, slice, { texts, colours, at })
+      ? [
+          ...cellTraces(this.#context, chosen, slice, { texts, colours, at }),
+          ...sampleTraces(samplesOf(places, colour, slice, { colours, at }), this.#place),
+        ]
       : [markTrace(chosen, slice, { texts, colours, at })];
     const failed = rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push(crosses("failed", failed, { symbol: "x" }, chosen, slice, at));
@@ -279,20 +317,12 @@ class SweepMap {
           at,
         ),
       );
-    const [columnOf, rowOf] = [xs, ys].map(
-      (column) => new Map(distinct(rows.map((index) => column[index])).map((value, rank) => [value, rank])),
-    );
-    this.#cursor.over(
-      rows.map((index, position) => ({
-        x: at(x, xs[index]),
-        y: at(y, ys[index]),
-        column: columnOf.get(/** @type {number} */ (xs[index])) ?? 0,
-        row: rowOf.get(/** @type {number} */ (ys[index])) ?? 0,
-        ordinal: Number(ordinals[index]),
-        text: texts[position],
-      })),
-    );
-    await this.#draw(traces, { xaxis: this.#axisLayout(x), yaxis: this.#axisLayout(y) });
+    this.#cursor.over(places);
+    const axis = (/** @type {string} */ name, /** @type {Values} */ column) => ({
+      ...this.#axisLayout(name),
+      ...(slice.isGrid ? { range: rangeOf(this.#context, name, rows, column, at) } : {}),
+    });
+    await this.#draw(traces, { xaxis: axis(x, xs), yaxis: axis(y, ys) });
   }
 
   /** @param {any[]} traces @param {any} layout */
@@ -311,7 +341,7 @@ class SweepMap {
     });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") this.#context.open(ordinal);
+      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context).colour);
     });
   }
 }
@@ -441,10 +471,13 @@ function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
   if (isText(values)) {
     const vocabulary = distinct(values);
     const count = Math.max(vocabulary.length, 1);
-    const discrete = Array.from({ length: count }, (_, index) => [
-      [index / count, WORDS[index % WORDS.length]],
-      [(index + 1) / count, WORDS[index % WORDS.length]],
-    ]).flat();
+    const discrete = Array.from({ length: count }, (_, index) => {
+      const ofWord = stateColour(String(vocabulary[index])) ?? WORDS[index % WORDS.length];
+      return [
+        [index / count, ofWord],
+        [(index + 1) / count, ofWord],
+      ];
+    }).flat();
     return {
       z: rows.map((index) =>
         values[index] === null ? null : vocabulary.indexOf(/** @type {string} */ (values[index])),
@@ -479,7 +512,7 @@ function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
 
 /** The points of grids as cells or contours, a trace for each grid. @param {Context} context @param {Chosen & {y: string}} chosen @param {Slice} slice @param {Drawn} drawn @returns {any[]} */
 function cellTraces(
-  { sweep, paths },
+  { sweep, paths, spans },
   { x, y, style },
   { rows, ordinals, xs, ys },
   { texts, colours: { z, words, scale, bar }, at },
@@ -488,6 +521,7 @@ function cellTraces(
     x: request?.axes?.[paths[x] ?? x],
     y: request?.axes?.[paths[y] ?? y],
   }));
+  const [isLogX, isLogY] = [x, y].map((name) => spans[name]?.scale === "log");
   const [allX, allY] = [xs, ys].map((column) => distinct(rows.map((index) => column[index])).map(Number));
   const layers = layered(
     rows.map((index) => Number(xs[index])),
@@ -501,8 +535,8 @@ function cellTraces(
     const isContour = style === "contour" && !words && across.length > 1 && up.length > 1;
     return {
       type: isContour ? "contour" : "heatmap",
-      x: ends(across, allX).map((value) => at(x, value)),
-      y: ends(up, allY).map((value) => at(y, value)),
+      x: (isContour ? across : ends(across, allX, isLogX)).map((value) => at(x, value)),
+      y: (isContour ? up : ends(up, allY, isLogY)).map((value) => at(y, value)),
       z: cells((position) => z[position], null),
       text: cells((position) => texts[position], ""),
       customdata: cells((position) => ordinals[rows[position]], null),
@@ -517,6 +551,64 @@ function cellTraces(
       line: { color: inks().panel, width: 0.7 },
     };
   });
+}
+
+/**
+ * Samples of a grid: places with their values and inks.
+ * @param {import("../draw/point-cursor.js").Place[]} places in the order of the rows
+ * @param {string} colour
+ * @param {Slice} slice
+ * @param {{colours: Colours, at: Scaled}} drawn
+ * @returns {import("../draw/samples.js").Sample[]}
+ */
+function samplesOf(places, colour, { rows, values }, { colours: { z, words, scale }, at }) {
+  return places.map(({ x, y, column, row, ordinal, text }, position) => {
+    const [value, shade] = [values[rows[position]], z[position]];
+    return {
+      x,
+      y,
+      column,
+      row,
+      text,
+      key: ordinal,
+      value: typeof value === "number" ? at(colour, value) : null,
+      ink: words
+        ? theme() === "dark"
+          ? BLACK
+          : WHITE
+        : shade === null
+          ? inks().soft
+          : inkOn(shade, [scale.zmin, scale.zmax]),
+    };
+  });
+}
+
+/**
+ * Range of an axis about the samples of a grid; undefined if plotly finds it.
+ * @param {Context} context @param {string} name @param {number[]} rows @param {Values} column @param {Scaled} at
+ */
+function rangeOf({ spans }, name, rows, column, at) {
+  const values = distinct(rows.map((index) => column[index])).map((value) => at(name, Number(value)));
+  return sampledRange(values, spans[name]?.scale === "log");
+}
+
+/**
+ * The samples that are ringed, with links to them.
+ * @param {string} id of the sweep @param {string} colour @param {{rows: number[], values: Values, ordinals: Values}} slice
+ */
+function ringsPart(id, colour, { rows, values, ordinals }) {
+  const found = extremes(
+    rows.map((index) => ({
+      value: typeof values[index] === "number" ? Number(values[index]) : null,
+      ordinal: Number(ordinals[index]),
+    })),
+  );
+  if (!found) return null;
+  const [least, largest] = found.map(({ value, ordinal }, order) => [
+    `${order ? "largest" : "least"} ${say(colour, value)} at `,
+    h("a", { href: link(["sweeps", id, "points", String(ordinal)]) }, `point ${ordinal}`),
+  ]);
+  return ["Ringed: ", ...least, ", ", ...largest, ". "];
 }
 
 /** Points that form no grid as marks. @param {Chosen & {y: string}} chosen @param {Slice} slice @param {Drawn} drawn @returns {any} */

@@ -1,7 +1,7 @@
 // Parallel coordinates without a mouse: fields for the ranges to which points are filtered, and buttons that move
 // an axis.
 
-import { number, title } from "../data/units.js";
+import { number } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { rounded } from "../ui/router.js";
 
@@ -14,7 +14,7 @@ const MOVES = [
 
 /**
  * An axis in the unit in which it is shown: the ends of its values, and its filters, whose ends may be infinite.
- * @typedef {{name: string, ends: number[], ranges: number[][]}} Axis
+ * @typedef {{name: string, title: string, ends: number[], ranges: number[][]}} Axis
  */
 
 /**
@@ -45,7 +45,7 @@ export function axisControls(onChange, onMove) {
 
   /** @param {Axis[]} axes */
   function show(axes) {
-    const wanted = JSON.stringify(axes.map((axis) => [title(axis.name), axis.ends, rangesOf(axis).length]));
+    const wanted = JSON.stringify(axes.map((axis) => [axis.title, axis.ends, rangesOf(axis).length]));
     if (wanted !== made) make(axes);
     made = wanted;
     for (const axis of axes) {
@@ -64,7 +64,7 @@ export function axisControls(onChange, onMove) {
   function make(axes) {
     inputs.clear();
     const parts = axes.map((axis, place) => {
-      const name = title(axis.name);
+      const name = axis.title;
       const pairs = rangesOf(axis).map((_, order) =>
         SIDES.map((side, index) =>
           h("input", {

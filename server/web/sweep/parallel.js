@@ -1,17 +1,23 @@
 // All swept parameters and a few results side by side, a line a point.
 
-import { label, say, shown, title, unit } from "../data/units.js";
-import { canvas, colourBar, draw, lineScale } from "../draw/plots.js";
+import { say, shown, unit } from "../data/units.js";
+import { canvas, colourBar, draw, laidOut, lineScale } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link, rounded } from "../ui/router.js";
+import { axisNames } from "./axis-names.js";
 import { axisControls } from "./parallel-controls.js";
 import { followLines, isKept, rangesOf } from "./parallel-lines.js";
 import { preferred, undelayed } from "./part.js";
 
 const HOW =
   "Drag along an axis, or enter a range below, to filter the points. Drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
+
+/** Form of the numbers at axes: no letters for powers of a thousand, since units have their own. */
+const TICKS = ".4~r";
+/** Least number whose thousands are apart. */
+const FIVE_DIGITS = 1e4;
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */
@@ -50,6 +56,12 @@ function usualNames(context) {
 class ParallelCoordinates {
   #context;
   #place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
+  /** On a narrow screen the picture is scrolled sideways. */
+  #scroller = h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-label": "Parallel coordinates, scrollable" },
+    this.#place,
+  );
   #caption = h("figcaption", {});
   #reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
   #left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
@@ -70,7 +82,7 @@ class ParallelCoordinates {
       "div",
       {},
       this.#controls,
-      h("figure", {}, this.#place, this.#reading, this.#left, this.#caption),
+      h("figure", {}, this.#scroller, this.#reading, this.#left, this.#caption),
       this.#fields.element,
     );
   }
@@ -115,7 +127,7 @@ class ParallelCoordinates {
 
   async redraw() {
     const isNewest = this.#begin();
-    const { table, biases, signal } = this.#context;
+    const { table, biases, depths, signal } = this.#context;
     const { colour, beside } = this.#drawControls();
     const names = this.#namesInOrder();
     const [ordinals, ...columns] = await table.columns("ordinal", ...names);
@@ -127,27 +139,37 @@ class ParallelCoordinates {
       fill(this.#caption, "No point has all of these values yet.");
       return;
     }
-    const dimensions = this.#dimensions(names, columns, rows);
+    await laidOut(this.#scroller, signal);
+    if (!isNewest()) return;
+    const named = axisNames(
+      names.map((name) => depths.title(name)),
+      this.#scroller.clientWidth,
+    );
+    this.#place.style.minWidth = `${named.width}px`;
+    const dimensions = this.#dimensions(names, columns, rows).map((dimension, order) => ({
+      ...dimension,
+      label: named.labels[order],
+    }));
     fill(
       this.#caption,
       HOW,
       [...new Set([beside, colour])].map(
-        (name) => biases.say(name) && ` ${label(name)}: ${biases.say(name)}`,
+        (name) => biases.say(name) && ` ${depths.label(name)}: ${biases.say(name)}`,
       ),
     );
     const line = {
       color: dimensions[names.indexOf(colour)].values,
       colorscale: lineScale(),
-      colorbar: colourBar(title(colour)),
+      colorbar: colourBar(depths.title(colour)),
     };
     const trace = {
       type: "parcoords",
       dimensions,
       line,
-      labelangle: dimensions.length > 4 ? -12 : 0,
+      labelside: named.side,
       labelfont: { size: 12 },
     };
-    const shape = await draw(this.#place, [trace], { margin: { l: 80, r: 60, t: 70, b: 30 } }, signal);
+    const shape = await draw(this.#place, [trace], { margin: named.margin }, signal);
     this.#readLine = (number) =>
       this.#read(
         Number(ordinals[rows[number]]),
@@ -160,7 +182,9 @@ class ParallelCoordinates {
 
   #drawControls() {
     const { results, colour, beside } = chosenIn(this.#context);
-    const options = results.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+    const options = results.map(
+      (name) => /** @type {[string, string]} */ ([name, this.#context.depths.label(name)]),
+    );
     fill(
       this.#controls,
       choice("Colour and last axis", options, colour, (value) => this.#keep({ colour: value })),
@@ -186,7 +210,7 @@ class ParallelCoordinates {
       const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
       return {
         name,
-        label: title(name),
+        tickformat: values.some((value) => Math.abs(value) >= FIVE_DIGITS) ? `,${TICKS}` : TICKS,
         constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
         values,
       };
@@ -212,6 +236,7 @@ class ParallelCoordinates {
     this.#fields.show(
       dimensions.map((dimension) => ({
         name: dimension.name,
+        title: this.#context.depths.title(dimension.name),
         ends: endsOf(dimension),
         ranges: opened(dimension),
       })),
@@ -226,9 +251,9 @@ class ParallelCoordinates {
 
   /** Shows the point of a line. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
   #read(ordinal, names, values) {
-    const { sweep, biases } = this.#context;
+    const { sweep, biases, depths } = this.#context;
     const words = names.map(
-      (name, order) => `${label(name)} ${say(name, values[order])}${biases.beside(name, ordinal)}`,
+      (name, order) => `${depths.label(name)} ${say(name, values[order])}${biases.beside(name, ordinal)}`,
     );
     fill(
       this.#reading,

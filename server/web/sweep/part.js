@@ -1,5 +1,6 @@
 // Common to the views of a sweep's points.
 
+import { LARGEST_ORBIT } from "../data/sweep-table.js";
 import { attend } from "../ui/notices.js";
 
 /**
@@ -15,7 +16,7 @@ import { attend } from "../ui/notices.js";
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {() => void} drawn says that what is shown is other columns than before
- * @property {(ordinal: number) => void} open
+ * @property {(ordinal: number, column?: string) => void} open a point, at the node that a column is of
  * @property {(changed: any) => void} changed takes the sweep as an answer shows it
  * @property {AbortSignal} signal
  */
@@ -47,6 +48,7 @@ export function undelayed(redraw, context) {
 /** The result that an engineer asks for first. @param {string[]} results */
 export function preferred(results) {
   return (
+    results.find((name) => name === LARGEST_ORBIT) ??
     results.find((name) => name.startsWith("orbit_radius_rms")) ??
     results.find((name) => name === "friction_coefficient_max") ??
     results.find((name) => !["state", "error_time", "error_node"].includes(name)) ??

@@ -1,7 +1,8 @@
 // Clouds of points: any two columns against each other.
 
 import { isText } from "../data/sweep-table.js";
-import { label, say, shown, title } from "../data/units.js";
+import { label, say, shown } from "../data/units.js";
+import { stateColour } from "../draw/colours.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -41,7 +42,7 @@ export function scatter(context) {
     const isNewest = begin();
     const chosen = chosenIn(context);
     const { x, y, colour } = chosen;
-    fill(controls, controlsPart(chosen, set));
+    fill(controls, controlsPart(chosen, context.depths, set));
     const [ordinals, xs, ys, colours] = await context.table.columns("ordinal", x, y, colour);
     if (!isNewest()) return;
     const both = ordinals.filter((_, index) => xs[index] !== null && ys[index] !== null).length;
@@ -49,7 +50,7 @@ export function scatter(context) {
       caption,
       `${both} of ${ordinals.length} points have both values. Select a point to open it. `,
       [...new Set([x, y, colour])].map(
-        (name) => context.biases.say(name) && `${label(name)}: ${context.biases.say(name)} `,
+        (name) => context.biases.say(name) && `${context.depths.label(name)}: ${context.biases.say(name)} `,
       ),
     );
     place.setAttribute("aria-label", `${label(y)} against ${label(x)}`);
@@ -58,7 +59,7 @@ export function scatter(context) {
       /** @type {Values} */ values,
       /** @type {boolean} */ isLog,
     ) => ({
-      title: title(name),
+      title: context.depths.title(name),
       quantity: name,
       type: isText(values) ? "category" : isLog ? "log" : "linear",
     });
@@ -98,9 +99,9 @@ function chosenIn({ table, query, axes }) {
   };
 }
 
-/** @param {Chosen} chosen @param {(key: string) => (value: string) => void} set */
-function controlsPart({ names, x, y, colour, isLogX, isLogY }, set) {
-  const options = names.map((name) => /** @type {[string, string]} */ ([name, label(name)]));
+/** @param {Chosen} chosen @param {import("../data/depths.js").Depths} depths @param {(key: string) => (value: string) => void} set */
+function controlsPart({ names, x, y, colour, isLogX, isLogY }, depths, set) {
+  const options = names.map((name) => /** @type {[string, string]} */ ([name, depths.label(name)]));
   return [
     choice("Across", options, x, set("x")),
     choice("Scale across", SCALES, isLogX ? "log" : "linear", set("xscale")),
@@ -116,13 +117,13 @@ function controlsPart({ names, x, y, colour, isLogX, isLogY }, set) {
  * @param {Chosen} chosen
  * @param {{ordinals: Values, xs: Values, ys: Values, colours: Values}} columns
  */
-function tracesOf({ biases }, { x, y, colour }, { ordinals, xs, ys, colours }) {
+function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colours }) {
   const isMany = ordinals.length > MANY;
   const at = (/** @type {string} */ name, /** @type {any[]} */ values) =>
     isText(values) ? values : shown(name, values);
   const [atX, atY] = [at(x, xs), at(y, ys)];
   const part = (/** @type {string} */ name, /** @type {Values} */ values, /** @type {number} */ index) =>
-    `${label(name)} ${say(name, values[index])}${biases.beside(name, Number(ordinals[index]))}`;
+    `${depths.label(name)} ${say(name, values[index])}${biases.beside(name, Number(ordinals[index]))}`;
   const text = isMany
     ? undefined
     : ordinals.map((ordinal, index) =>
@@ -141,7 +142,7 @@ function tracesOf({ biases }, { x, y, colour }, { ordinals, xs, ys, colours }) {
         y: atY,
         text,
         customdata: ordinals,
-        marker: { size, color, colorscale: lineScale(), colorbar: colourBar(title(colour)) },
+        marker: { size, color, colorscale: lineScale(), colorbar: colourBar(depths.title(colour)) },
       },
     ];
   }
@@ -155,7 +156,11 @@ function tracesOf({ biases }, { x, y, colour }, { ordinals, xs, ys, colours }) {
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
       customdata: rows.map((index) => ordinals[index]),
-      marker: { size, color: LINES[order % LINES.length], symbol: order },
+      marker: {
+        size,
+        color: stateColour(String(word)) ?? LINES[order % LINES.length],
+        symbol: order,
+      },
       showlegend: true,
     };
   });

@@ -39,7 +39,7 @@ export function effects(context) {
       controls,
       choice(
         "Result",
-        results.map((name) => [name, label(name)]),
+        results.map((name) => [name, context.depths.label(name)]),
         result,
         (value) => {
           context.keep({ result: value });
@@ -68,7 +68,7 @@ export function effects(context) {
     );
     fill(
       caption,
-      `Of the variance of ${label(result)} over ${rows.length} points. `,
+      `Of the variance of ${context.depths.label(result)} over ${rows.length} points. `,
       sayMethod(found),
       ` ${context.biases.say(result)}`,
     );
@@ -192,7 +192,7 @@ function drawShares(place, axes, found, signal) {
  * @param {string} result
  * @param {Share[]} found
  */
-function drawCurves(place, { axes, spans, signal }, result, found) {
+function drawCurves(place, { axes, spans, depths, signal }, result, found) {
   const numbered = (/** @type {string} */ name, /** @type {number} */ index) =>
     `${name}${index ? index + 1 : ""}`;
   const layouts = axes.flatMap((axis, index) => [
@@ -202,7 +202,7 @@ function drawCurves(place, { axes, spans, signal }, result, found) {
     ],
     [
       numbered("yaxis", index),
-      { title: index ? "" : title(result), quantity: result, matches: index ? "y" : undefined },
+      { title: index ? "" : depths.title(result), quantity: result, matches: index ? "y" : undefined },
     ],
   ]);
   const traces = axes.map((axis, index) => {

@@ -1,9 +1,11 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
+import { csvOf } from "../data/csv.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
-import { label, meaning, number, title, unit } from "../data/units.js";
-import { choice, debounced, fill, h } from "../ui/dom.js";
+import { meaning, nodeOfColumn, number, unit } from "../data/units.js";
+import { choice, debounced, download, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
+import { MOST } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
 import { preferred } from "./part.js";
@@ -55,6 +57,7 @@ class PointTable {
   /** @type {(index: number) => boolean} */
   #doubts = () => false;
   #isScrolled = false;
+  #compare = h("span", { style: "display:contents" });
 
   /** @param {Context} context */
   constructor(context) {
@@ -88,6 +91,12 @@ class PointTable {
       { class: "controls" },
       h("label", { class: "field" }, h("span", {}, "Filter, in units as shown"), this.#filter),
       states,
+      this.#compare,
+      h(
+        "button",
+        { onclick: () => this.#save(), title: "The rows and columns shown, in SI units" },
+        "Save as CSV",
+      ),
     );
     this.element = h("div", {}, controls, this.#wrong, this.#columnsPart, this.#status, this.#scroller);
   }
@@ -125,8 +134,10 @@ class PointTable {
       this.#status,
       `${this.#rows.length === data.rows ? "" : `${this.#rows.length} of `}${data.rows} points`,
     );
+    this.#drawCompare();
     fill(
       this.#header,
+      h("th", { scope: "col", style: "width:2rem" }, h("span", { class: "visually-hidden" }, "Compared")),
       asked.map((name) => this.#head(name, name === by, isDown)),
     );
     this.#drawColumns();
@@ -151,7 +162,7 @@ class PointTable {
     const sort = h(
       "button",
       { onclick: () => this.#keep({ sort: name, order: isSorted && !isDown ? "down" : null }) },
-      name === "ordinal" ? "Point" : title(name),
+      name === "ordinal" ? "Point" : this.#context.depths.title(name),
       isSorted ? (isDown ? " ▼" : " ▲") : "",
     );
     const attributes = {
@@ -181,7 +192,7 @@ class PointTable {
       h(
         "tr",
         { class: "gap", "aria-hidden": "true" },
-        h("td", { colspan: this.names.length, style: `height:${count * ROW_PX}px` }),
+        h("td", { colspan: this.names.length + 1, style: `height:${count * ROW_PX}px` }),
       );
     fill(
       this.#body,
@@ -196,8 +207,67 @@ class PointTable {
     const ordinal = Number(this.#columns[this.names.indexOf("ordinal")]?.[index] ?? index + 1);
     return h(
       "tr",
-      { onclick: () => this.#context.open(ordinal) },
+      { onclick: () => this.#context.open(ordinal, this.#sorted) },
+      this.#tick(ordinal),
       this.names.map((name) => this.#cell(name, index, ordinal)),
+    );
+  }
+
+  /** Saves the rows and columns that are shown. */
+  #save() {
+    const { sweep } = this.#context;
+    const name = (sweep.name ?? sweep.id).replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase();
+    const text = csvOf(this.names, this.#columns, this.#rows);
+    download(new Blob([text], { type: "text/csv" }), `${name}.csv`);
+  }
+
+  /** Column by which rows are sorted; its node is opened and compared. */
+  get #sorted() {
+    return this.#context.query.get("sort") ?? "";
+  }
+
+  /** Ordinals of the points that are ticked, in the order of the ticks. */
+  get #ticked() {
+    return tickedIn(this.#context.query.get("ticked") ?? "");
+  }
+
+  /** Cell with the tick of a point. @param {number} ordinal */
+  #tick(ordinal) {
+    const ticked = this.#ticked;
+    const isTicked = ticked.includes(ordinal);
+    const box = h("input", {
+      type: "checkbox",
+      "aria-label": `Compare point ${ordinal}`,
+      checked: isTicked,
+      disabled: !isTicked && ticked.length >= MOST,
+      onchange: () => {
+        const others = this.#ticked.filter((other) => other !== ordinal);
+        this.#context.keep({ ticked: (box.checked ? [...others, ordinal] : others).join(",") || null });
+        this.#drawCompare();
+        this.#drawRows();
+      },
+    });
+    return h("td", { onclick: (/** @type {Event} */ event) => event.stopPropagation() }, box);
+  }
+
+  /** Draws the link to the comparison of the ticked points. */
+  #drawCompare() {
+    const { id } = this.#context.sweep;
+    const ticked = this.#ticked;
+    const points = ticked.map((ordinal) => `${id}:${ordinal}`).join(",");
+    const full = ticked.length >= MOST ? ` (at most ${MOST})` : "";
+    fill(
+      this.#compare,
+      ticked.length
+        ? h(
+            "a",
+            {
+              class: "button",
+              href: link(["compare"], { points, view: "profiles", node: nodeOfColumn(this.#sorted) }),
+            },
+            `Compare ${ticked.length} ${ticked.length === 1 ? "point" : "points"}${full}`,
+          )
+        : h("button", { disabled: true, title: "Tick the points to compare" }, "Compare"),
     );
   }
 
@@ -209,7 +279,13 @@ class PointTable {
       return h(
         "td",
         { class: "number" },
-        h("a", { href: link(["sweeps", sweep.id, "points", String(ordinal)]) }, ordinal),
+        h(
+          "a",
+          {
+            href: link(["sweeps", sweep.id, "points", String(ordinal)], { node: nodeOfColumn(this.#sorted) }),
+          },
+          ordinal,
+        ),
       );
     if (name === "state")
       return h(
@@ -247,7 +323,7 @@ class PointTable {
         "label",
         { class: "tick small", style: "width:17rem" },
         box,
-        name === "ordinal" ? "point" : label(name),
+        name === "ordinal" ? "point" : this.#context.depths.label(name),
       );
     });
     fill(
@@ -266,6 +342,15 @@ class PointTable {
       if (!this.#context.signal.aborted) this.#drawRows();
     });
   }
+}
+
+/**
+ * Ordinals that a link ticks, each once.
+ * @param {string} text such as `3,12`
+ */
+export function tickedIn(text) {
+  const ordinals = text.split(",").map(Number);
+  return [...new Set(ordinals)].filter((ordinal) => Number.isInteger(ordinal) && ordinal > 0).slice(0, MOST);
 }
 
 /**

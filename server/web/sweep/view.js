@@ -4,8 +4,9 @@ import { follow, get, isFinal, send } from "../data/api.js";
 import { Biases } from "../data/biases.js";
 import { Depths } from "../data/depths.js";
 import { Pace } from "../data/pace.js";
+import { hasNotBegun, sweepsBefore } from "../data/queue.js";
 import { SweepTable, sweptBy } from "../data/sweep-table.js";
-import { label, say } from "../data/units.js";
+import { label, nodeOfColumn, say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend, reported, notice } from "../ui/notices.js";
 import { progressPart, when } from "../ui/progress.js";
@@ -35,6 +36,10 @@ const TABLE = PARTS.findIndex(([name]) => name === "table");
 
 /** The least time between two readings of a table that is still growing. */
 const REDRAW_MS = 4000;
+/** Interval of looks at the sweeps before one that has not begun. */
+const PLACE_MS = 4000;
+/** Sweeps that may run, at most, among which a place is found: the longest page of the service. */
+const MOST_LISTED = 500;
 
 /** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
@@ -53,7 +58,7 @@ export async function show(main, route, signal) {
 
   const query = new URLSearchParams(route.query);
   const taken = snippets(() =>
-    sweepLines([{ id, path: data.path, fields: part.fields() }, ...(part.others?.() ?? [])]),
+    sweepLines([{ id, path: data.path, fields: data.served(part.fields()) }, ...(part.others?.() ?? [])]),
   );
   const drawn = () => taken.dispatchEvent(new Event("redraw"));
   /** @type {Context} */
@@ -76,7 +81,8 @@ export async function show(main, route, signal) {
     },
     drawn,
     changed: (changed) => shown.update(changed),
-    open: (ordinal) => go(link(["sweeps", id, "points", String(ordinal)])),
+    open: (ordinal, column = "") =>
+      go(link(["sweeps", id, "points", String(ordinal)], { node: nodeOfColumn(column) })),
     signal,
   };
   const part = make(context);
@@ -95,7 +101,7 @@ export async function show(main, route, signal) {
     signal,
   );
   shown.start();
-  return sweep.name ?? `Sweep ${id.slice(-8)}`;
+  return `${sweep.name ?? `Sweep ${id.slice(-8)}`}, ${text}`;
 }
 
 /** A sweep on the page, which follows its changes: head, tabs, and the part that is drawn. */
@@ -107,6 +113,8 @@ class ShownSweep {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #waiting;
   #hasLearned = false;
+  /** Sweeps before one that has not begun. */
+  #before = 0;
   head = h("div", {});
 
   /** @param {Context} context @param {import("./part.js").Part} part @param {string} view that is shown */
@@ -128,6 +136,20 @@ class ShownSweep {
     const { sweep, signal } = this.#context;
     attend(this.#learnPace(), signal);
     if (!isFinal(sweep)) this.#follow();
+    const look = () => hasNotBegun(this.#context.sweep) && attend(this.#learnPlace(), signal);
+    look();
+    const timer = setInterval(look, PLACE_MS);
+    signal.addEventListener("abort", () => clearInterval(timer));
+  }
+
+  /** Learns how many sweeps are before one that has not begun. */
+  async #learnPlace() {
+    const { sweep, signal } = this.#context;
+    const { sweeps } = await get("/v1/sweeps", { state: "running", limit: MOST_LISTED }, signal);
+    const before = sweepsBefore(sweep, sweeps);
+    if (before === this.#before || signal.aborted) return;
+    this.#before = before;
+    this.#drawHead();
   }
 
   #follow() {
@@ -147,7 +169,11 @@ class ShownSweep {
     this.#drawHead();
     this.#drawTabs();
     attend(this.#learnPace(), signal);
-    if (hasResults && this.#waiting === undefined)
+    if (!isFinal(before) && isFinal(sweep)) {
+      // Below "completed" stand all results.
+      clearTimeout(this.#waiting);
+      void this.#redraw();
+    } else if (hasResults && this.#waiting === undefined)
       this.#waiting = setTimeout(
         () => void this.#redraw(),
         Math.max(0, this.#drawnAt + REDRAW_MS - Date.now()),
@@ -172,7 +198,7 @@ class ShownSweep {
       this.head,
       ...headPart(
         this.#context.sweep,
-        this.#pace,
+        { pace: this.#pace, before: this.#before },
         (verb) => this.#act(verb),
         (changes) => this.#change(changes),
       ),
@@ -249,11 +275,11 @@ async function secondsOfPoint(id, signal) {
 
 /**
  * @param {any} sweep
- * @param {Pace} pace
+ * @param {{pace: Pace, before: number}} progress and the number of sweeps before one that has not begun
  * @param {(verb: string) => void} act
  * @param {(changes: any) => void} change
  */
-function headPart(sweep, pace, act, change) {
+function headPart(sweep, { pace, before }, act, change) {
   const button = (
     /** @type {string} */ verb,
     /** @type {string} */ text,
@@ -318,7 +344,7 @@ function headPart(sweep, pace, act, change) {
         h("a", { class: "button", href: sweep.links.export, download: "" }, "Download all"),
       ),
     ),
-    h("div", { "aria-live": "off" }, progressPart(sweep, pace)),
+    h("div", { "aria-live": "off" }, progressPart(sweep, pace, before)),
     worst &&
       h(
         "p",

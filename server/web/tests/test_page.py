@@ -26,7 +26,7 @@ def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:
     link.click()
     expect(page.get_by_role("heading", level=1)).to_have_text(NASTY)
     assert page.locator("main img, main script").count() == 0
-    assert page.title() == f"{NASTY} · drillsweep"
+    assert page.title() == f"{NASTY}, Map · drillsweep"
 
 
 def test_a_sweep_is_submitted_and_watched_until_it_is_complete(opened: Opens) -> None:
@@ -225,7 +225,7 @@ def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named
 def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=table&sort=flow_rate&order=down")
     first = page.locator(".rows tbody tr:not(.gap)").first
-    expect(first.locator("td").nth(2)).to_have_text("0.04")
+    expect(first.locator("td").nth(3)).to_have_text("0.04")
     page.get_by_role("searchbox").fill("mud_density>1500 flow_rate=0.01")
     expect(page.get_by_text("2 of 8 points")).to_be_visible()
     page.get_by_role("button", name=re.compile("Units")).click()
@@ -246,7 +246,7 @@ def test_every_view_of_a_point_is_shown(opened: Opens, named: Sweep, view: str, 
 
 
 def test_pictures_are_saved_here_and_sent_nowhere(opened: Opens, named: Sweep) -> None:
-    picture = drawn(opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1"), "History of node")
+    picture = drawn(opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49"), "History of node")
     titles = [button.get_attribute("data-title") for button in picture.locator(".modebar-btn").all()]
     assert {"Save as PNG", "Save as SVG"} <= set(titles)
     assert not [title for title in titles if title is None or re.search("(?i)cloud|share|send|plotly|link", title)]
@@ -258,7 +258,7 @@ def ranges(picture: Locator) -> list[float]:
 
 
 def test_the_link_holds_how_a_picture_is_zoomed(opened: Opens, named: Sweep) -> None:
-    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1")
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49")
     spectrum = drawn(page, "Full spectrum of node")
     whole = ranges(spectrum)
     spectrum.scroll_into_view_if_needed()
@@ -299,7 +299,7 @@ def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Swee
 
 
 def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, named: Sweep) -> None:
-    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1")
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49")
     history = drawn(page, "History of node")
     shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
     expect(shown).to_be_visible()
@@ -338,7 +338,7 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
 
 
 def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep) -> None:
-    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=1&from=0&to=0.5")
+    page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49&from=0&to=0.5")
     modes = named.point(1).modes(to_hz=20.0)["modes"]
     expect(page.get_by_text(f"{len(modes)} modes were found up to 20 Hz")).to_be_visible(timeout=60_000)
     cells = page.locator("[data-frequency]")
@@ -384,7 +384,7 @@ def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: C
     other = client.submit("paper-200m", set=changes, axes=axes, name="slower").wait(timeout=120.0)
     page = opened(f"#/sweeps/{sweep.id}?view=difference&colour=orbit_radius_rms_49")
     page.get_by_label("Compared with").select_option(label="slower")
-    drawn(page, "difference of orbit radius rms, node 49")
+    drawn(page, "difference of lateral vibration, node 49")
     expect(page.get_by_text("slower less short, at 2 points that both have")).to_be_visible()
     assert f"with={other.id}" in page.url
     mine, theirs = (of.table().to_pandas().set_index(["flow_rate", "mud_density"]) for of in (sweep, other))
@@ -489,7 +489,7 @@ def test_no_view_keeps_anybody_out(
 def test_points_are_compared_by_the_link(opened: Opens, named: Sweep) -> None:
     keys = ",".join(f"{named.id}:{number}" for number in (1, 2, 8))
     for view, picture in COMPARED.items():
-        page = opened(f"#/compare?points={keys}&view={view}&node=1")
+        page = opened(f"#/compare?points={keys}&view={view}&node=49")
         drawn(page, picture)
         expect(page.get_by_role("table", name="Points compared").get_by_role("row")).to_have_count(3)
         page.get_by_text("Lines that made this view").click()

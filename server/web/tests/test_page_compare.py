@@ -211,6 +211,22 @@ def test_compared_statistics_carry_the_bias_of_the_window_that_was_verified(open
     expect(row).not_to_contain_text("bias")
 
 
+def test_points_are_compared_in_the_window_of_their_statistics(opened: Opens, named: Sweep, client: Client) -> None:
+    size = "orbit_radius_rms_49"
+    table = named.table()
+    page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=statistics&depth=57.73")
+    assert cells(page, "Statistics", "Orbit size (rms about the mean)") == [
+        f"{float(f'{1e3 * value:.4g}'):g} mm" for value in list(table[size])[:2]
+    ]
+    other = {**SHORT, "recording.orbit_window": {"from": 0.3, "to": 0.5}}
+    apart = client.submit("paper-200m", set=other, axes={"flow_rate": [0.01]}, name="apart").wait(timeout=120.0)
+    page = opened(f"#/compare?points={key(named)},{key(apart)}&view=statistics&depth=57.73")
+    expect(page.get_by_text("point 1 0.1 to 0.5 s, point 2 0.3 to 0.5 s")).to_be_visible()
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    page.get_by_role("button", name="Whole run").click()
+    expect(page.get_by_text("of different windows")).to_have_count(0)
+
+
 def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, tmp_path: Path) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 8)}&view=well")
     assert [name[0] for name in names(page, "Well")] == ["1", "2"]
@@ -240,7 +256,7 @@ def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Open
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
     picture = drawn(page, "Full spectra")
     names = picture.evaluate("place => place.layout.annotations.map(({ text }) => text)")
-    own = [named.point(number).spectrum(node=49, time=(0.5 / 3, 0.5), window="hann", range_hz=100) for number in (1, 2)]
+    own = [named.point(number).spectrum(node=49, time=(0.1, 0.5), window="hann", range_hz=100) for number in (1, 2)]
     lines = [
         f"{number}: {'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
         for number, table in enumerate(own, 1)
@@ -312,26 +328,52 @@ def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, na
     axes = {"well.hole_diameter": [0.2159, 0.26]}
     holes = client.submit("paper-200m", set=SHORT, axes=axes, name="two holes").wait(timeout=120.0)
     page = opened(f"#/compare?points={key(holes)},{key(holes, 2)}&view=orbit&depth=57.73&zoom=hole")
-    circles = (
-        "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, line }) => [x[0], line.color])"
-    )
+    circles = "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, xaxis }) => [x[0], xaxis])"
     picture = drawn(page, "Orbits")
-    orbits = picture.evaluate(
-        "place => place.data.filter(({ showlegend }) => showlegend).map(({ line }) => line.color)"
-    )
     statics = [point.statics() for point in (holes.point(1), holes.point(2))]
     clearances = [float(table["clearance"][list(table["node"]).index(49)]) for table in statics]
     shown = picture.evaluate(circles)
     assert [radius for radius, _ in shown] == pytest.approx([1e3 * clearance for clearance in clearances])
-    assert [colour for _, colour in shown] == orbits
+    assert [panel for _, panel in shown] == ["x", "x2"]
+    # On one scale.
+    scale = "place => ['xaxis', 'xaxis2', 'yaxis', 'yaxis2'].map((name) => place._fullLayout[name])"
+    scale += ".map(({ _length, range }) => _length / (range[1] - range[0]))"
+    assert picture.evaluate(scale) == pytest.approx(4 * [picture.evaluate(scale)[0]], rel=1e-6)
     caption = page.locator("figcaption")
     for number, clearance in enumerate(clearances, 1):
         expect(caption).to_contain_text(f"point {number} {float(f'{1e3 * clearance:.4g}'):g} mm from the axis")
-    expect(caption).not_to_contain_text("grey")
-    # Points of one hole have one.
+    # One hole is said once.
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=orbit&depth=57.73")
-    assert len(drawn(page, "Orbits").evaluate(circles)) == 1
-    expect(page.locator("figcaption")).to_contain_text("On the grey circle the node touches the wall.")
+    assert len(drawn(page, "Orbits").evaluate(circles)) == 2
+    said = re.compile(r"On the grey circle the node touches the wall, \S+ mm from the axis\.")
+    expect(page.locator("figcaption")).to_contain_text(said)
+
+
+def test_points_over_time_have_a_panel_each_on_one_scale(opened: Opens, named: Sweep) -> None:
+    points = ",".join(key(named, ordinal) for ordinal in (1, 2, 3))
+    for view, picture, count in [
+        ("history", "Histories", 3),
+        ("rotation", "Rotation and torque", 3),
+        ("bit", "Rotation at bit and top", 6),
+    ]:
+        page = opened(f"#/compare?points={points}&view={view}")
+        shown = drawn(page, picture)
+        read = "place => place.data.map(({ yaxis }) => yaxis)"
+        assert shown.evaluate(read) == ["y", *(f"y{number}" for number in range(2, count + 1))]
+        spans = "place => [1, 2, 3].map((number) => place._fullLayout[`yaxis${number > 1 ? number : ''}`].range)"
+        first, *others = shown.evaluate(spans)
+        assert others == [pytest.approx(first), pytest.approx(first)]
+        headings = shown.evaluate("place => place.layout.annotations.map(({ text }) => text.split(': ')[0].at(-1))")
+        assert headings == (["1", "2", "3"] * 2)[:count]
+
+
+def test_compared_orbits_are_below_each_other_on_a_phone(opened: Opens, named: Sweep) -> None:
+    points = ",".join(key(named, ordinal) for ordinal in (1, 2, 3))
+    page = opened(f"#/compare?points={points}&view=orbit", viewport={"width": 390, "height": 844})
+    picture = drawn(page, "Orbits")
+    widths = picture.evaluate("place => ['xaxis', 'xaxis2', 'xaxis3'].map((name) => place._fullLayout[name]._length)")
+    assert min(widths) > 150
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_compared_wells_say_how_far_from_the_axis_strings_are_drawn(opened: Opens, named: Sweep) -> None:
@@ -382,18 +424,18 @@ def test_snapshots_are_compared_side_by_side(
     assert troubles == []
     page.get_by_role("link", name="Rotation at bit and top").click()
     picture = drawn(page, "Rotation at bit and top")
-    speeds = "place => place.data.filter(({ yaxis }) => yaxis === 'y').map(({ y }) => [...y])"
+    speeds = "place => place.data.filter(({ showlegend }) => showlegend).map(({ y }) => [...y])"
     # The histories of all have the bit, at the same rate.
     caption = page.locator("figcaption")
     expect(caption).to_contain_text("From the recorded histories.")
     for speed, sweep in zip(picture.evaluate(speeds), (elsewhere, named), strict=True):
         bit = int(sweep.point(1).statics()["node"][-1])
-        history = sweep.point(1).history(node=bit, time=(0.5 / 3, 0.5))
+        history = sweep.point(1).history(node=bit, time=(0.1, 0.5))
         np.testing.assert_allclose(speed, history[f"rotation_speed_{bit}"], rtol=1e-6)
     page.get_by_label("End of the string").select_option("top")
     expect(missing).to_contain_text("Point 2 is missing: Rotation speed and torque at the top")
     expect(caption).to_contain_text("From the snapshots.")
-    top = elsewhere.point(1).snapshots(node=1, time=(0.5 / 3, 0.5))
+    top = elsewhere.point(1).snapshots(node=1, time=(0.1, 0.5))
     torque = picture.evaluate("place => [...place.data.find(({ yaxis }) => yaxis === 'y2').y]")
     np.testing.assert_allclose(torque, top["torque"] / 1e3, rtol=1e-6)
 
@@ -405,7 +447,7 @@ def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> 
         for number in (1, 2)
     ]
     assert scales[0] == scales[1]
-    own = [named.point(number).spectrogram(node=49, range_hz=50, time=(0.5 / 3, 0.5)) for number in (1, 2)]
+    own = [named.point(number).spectrogram(node=49, range_hz=50, time=(0.1, 0.5)) for number in (1, 2)]
     most = max(
         float(table["amplitude"][abs(table["frequency"]) >= 2.5 * table.attributes["resolution"]].max())
         for table in own
@@ -433,7 +475,7 @@ def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: S
     expect(reading.get_by_role("paragraph")).to_have_count(len(ordinals))
     for number, tension in enumerate(tensions, 1):
         text = reading.get_by_role("paragraph").nth(number - 1).inner_text()
-        words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*normal force \S+ k?N", text)
+        words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*side force \S+ k?N", text)
         assert words is not None, text
         assert float(words.group(1)) == pytest.approx(tension, rel=1e-3)
     # The link holds where the cursor is.
@@ -568,7 +610,7 @@ def test_the_lines_of_a_comparison_follow_what_is_chosen(opened: Opens, named: S
     page.get_by_label("From [s]").fill("")
     page.get_by_label("From [s]").blur()
     until(page, lambda: "from=" not in page.url)
-    expect(page.get_by_label("From [s]")).to_have_value("0.167")
+    expect(page.get_by_label("From [s]")).to_have_value("0.1")
 
 
 def test_the_whole_hole_is_shown_where_it_is_chosen(opened: Opens, named: Sweep) -> None:

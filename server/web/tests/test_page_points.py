@@ -68,7 +68,7 @@ def test_the_keyboards_focus_stays_where_controls_are_made_anew(opened: Opens, s
     assert focused(page) == "Orbit shows"
     page.get_by_label("Node", exact=True).focus()
     page.keyboard.press("ArrowDown")
-    until(page, lambda: "node=1" in page.url)
+    until(page, lambda: "node=49" in page.url)
     drawn(page, "Orbit of node 49")
     assert focused(page) == "Node"
     units = page.get_by_role("button", name="Units: SI. Switch")
@@ -95,13 +95,13 @@ LINES_OF_A_POINT = {
     "profiles&profiles=largest_normal_force,stick_time": {
         "contacts": ["measured_depth", "largest_normal_force", "stick_time"]
     },
-    "motion&node=1&from=0.2&to=0.4": {
+    "motion&node=49&from=0.2&to=0.4": {
         "history": ["time", "u_49", "rotation_speed_49", "torque_49"],
         "orbit": ORBIT,
         "spectrum": ["frequency", "amplitude"],
         "statistics": STATISTICS,
     },
-    "spectrogram&node=1&range=50": {"spectrogram": ["time", "frequency", "amplitude"]},
+    "spectrogram&node=49&range=50": {"spectrogram": ["time", "frequency", "amplitude"]},
     "string": {
         "snapshots": ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"],
         "history_297": ["time", "rotation_speed_297", "torque_297"],
@@ -255,7 +255,7 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
         depth, force = float(depths[node]), float(statics["normal_force"][node]) / 1e3
         tension = float(profile["effective_tension"][max(0, node - 1)]) / 1e3
         until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
-        words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*normal force (\S+) k?N", reading.inner_text())
+        words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*side force (\S+) k?N", reading.inner_text())
         assert words is not None, reading.inner_text()
         assert [float(word) for word in words.groups()[:2]] == pytest.approx([depth, tension], rel=1e-3)
         assert float(words.group(3)) == pytest.approx(force, rel=1e-3, abs=1e-9)
@@ -319,7 +319,7 @@ def test_snapshots_are_downloaded_as_csv(opened: Opens, recorded: Sweep) -> None
 
 
 def test_rotation_of_a_node_says_of_which(opened: Opens, sweep: Sweep) -> None:
-    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=1")
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     picture = drawn(page, "Rotation speed and torque of node 49 at 57.73 m")
     expect(page.get_by_role("heading", name="Rotation speed and torque of node 49 at 57.73 m")).to_be_visible()
     ticks = picture.locator(".y2tick text").all_text_contents()
@@ -399,7 +399,7 @@ def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Op
     changes = SHORT | {"recording.spectrum_windows": windows}
     verified = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, verify=1).wait(timeout=180.0)
     bias = float(verified.verification()["bias_line_frequency_hz_49_w2"][0])
-    page = opened(f"#/sweeps/{verified.id}/points/1?view=motion&node=1&from=0.1&to=0.5&range=100")
+    page = opened(f"#/sweeps/{verified.id}/points/1?view=motion&node=49&from=0.1&to=0.5&range=100")
     lines = page.get_by_role("region", name="Lines, scrollable").get_by_role("row")
     expect(lines.filter(has_text="(bias ")).to_have_count(1)
     shown = re.search(r"\(bias (\S+) Hz\)", lines.nth(1).inner_text())
@@ -408,13 +408,13 @@ def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Op
     assert float(shown[1].replace("\N{MINUS SIGN}", "-")) == pytest.approx(bias, rel=0.05)
     for window in ("from=0.1&to=0.45", "from=0.1&to=0.5&window=rectangular"):
         page.goto("about:blank")
-        page.goto(f"{client.server}/#/sweeps/{verified.id}/points/1?view=motion&node=1&{window}")
+        page.goto(f"{client.server}/#/sweeps/{verified.id}/points/1?view=motion&node=49&{window}")
         expect(lines.nth(1)).to_be_visible()
         expect(lines.filter(has_text="(bias ")).to_have_count(0)
 
 
 def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
-    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=1")
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     last = "place => Math.max(...place.data[0].x)"
     picture = drawn(page, "Full spectrum of node 49")
     assert 15.0 < picture.evaluate(last) <= 20.0
@@ -499,10 +499,18 @@ def test_the_link_holds_the_time_and_the_view_of_the_string(opened: Opens, recor
     drawn(other, "Rotation speed and torque")
     until(other, lambda: pixels(again) == expected)
     assert clock(other) == clock(page) == pytest.approx(0.25)
-    # The usual view is no part of the link.
+    # The usual view, a section, is no part of the link.
     page.keyboard.press("Home")
     until(page, lambda: "turn=" not in page.url)
-    assert pixels(picture) != expected
+    section = pixels(picture)
+    assert section != expected
+    views = {section}
+    for name in ("Plan", "Free view"):
+        page.get_by_role("button", name=name).click()
+        until(page, lambda: "turn=" in page.url and pixels(picture) not in views)
+        views.add(pixels(picture))
+    page.get_by_role("button", name="Section").click()
+    until(page, lambda: "turn=" not in page.url and pixels(picture) == section)
 
 
 def test_the_string_is_saved_as_it_is_shown(opened: Opens, recorded: Sweep) -> None:
@@ -553,10 +561,10 @@ def test_an_answer_of_another_node_that_comes_late_is_not_shown(opened: Opens, s
     page = opened("#/nowhere")
     held: list[Route] = []
     page.route("**/history?*node=49&*", lambda route: held.append(route))
-    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion&node=1"))
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion&node=49"))
     drawn(page, "Orbit of node 49")
     until(page, lambda: len(held) == 1)
-    page.get_by_label("Node", exact=True).select_option("0")
+    page.get_by_label("Node", exact=True).select_option("10")
     picture = drawn(page, "Rotation speed and torque of node 10")
     shown = picture.evaluate("place => [...place.data[0].y]")
     with page.expect_response("**/history?*node=49&*"):
@@ -569,9 +577,9 @@ def test_an_answer_of_another_node_that_comes_late_is_not_shown(opened: Opens, s
 def test_a_node_that_cannot_be_shown_leaves_the_others(opened: Opens, sweep: Sweep, troubles: list[str]) -> None:
     page = opened("#/nowhere")
     page.route("**/orbit?*node=49&*", lambda route: route.fulfill(status=503, json={"title": "Busy", "detail": "busy"}))
-    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion&node=1"))
+    page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion&node=49"))
     expect(page.get_by_role("alert").filter(has_text="busy").first).to_be_visible()
-    page.get_by_label("Node", exact=True).select_option("0")
+    page.get_by_label("Node", exact=True).select_option("10")
     drawn(page, "Orbit of node 10")
     drawn(page, "History of node 10")
     expect(page.get_by_role("alert").filter(has_text="busy")).to_have_count(0)

@@ -292,6 +292,31 @@ def test_the_time_left_is_unknown_while_a_sweep_waits(idle: str, opened: Opens) 
     expect(page.get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
 
 
+def test_a_sweep_that_has_not_begun_waits_behind_others(idle: str, opened: Opens) -> None:
+    with Client(idle) as client:
+        first, second = (
+            client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.01, rate]}, name=f"at {rate}")
+            for rate in (0.02, 0.03)
+        )
+        page = opened(f"#/sweeps/{second.id}", address=idle)
+        expect(page.locator(".state").first).to_have_text("waiting")
+        expect(page.get_by_text("0 of 2 succeeded, behind 1 sweep, time left unknown")).to_be_visible()
+        first.cancel()
+        expect(page.get_by_text("0 of 2 succeeded, time left unknown")).to_be_visible()
+
+
+def test_a_state_has_one_colour_on_the_page(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
+    picture = drawn(page, "over flow rate")
+    of_word = "element => getComputedStyle(element).color"
+    word = page.locator(".state.succeeded, .state.completed").first.evaluate(of_word)
+    of_cell = (
+        "place => { const span = document.createElement('span'); span.style.color = place.data[0].colorscale[0][1];"
+    )
+    of_cell += " document.body.append(span); const { color } = getComputedStyle(span); span.remove(); return color; }"
+    assert picture.evaluate(of_cell) == word
+
+
 @pytest.fixture
 def other(client: Client) -> Sweep:
     """Two of the points of `named`, at another friction."""
@@ -599,7 +624,7 @@ def test_the_bar_of_colours_says_the_depth_of_its_node(opened: Opens, named: Swe
     statics = named.point(1).statics()
     depth = float(statics["measured_depth"][list(statics["node"]).index(49)])
     title = "place => place.data[0].colorbar.title.text"
-    assert picture.evaluate(title) == f"orbit radius rms, node 49 at {float(f'{depth:.4g}'):g} m [mm]"
+    assert picture.evaluate(title) == f"lateral vibration at {float(f'{depth:.4g}'):g} m [mm]"
 
 
 def test_the_list_is_asked_for_once_and_waits_for_nothing_beside_it(opened: Opens, named: Sweep) -> None:
@@ -629,7 +654,7 @@ def test_a_map_does_not_wait_for_the_depths_of_nodes(opened: Opens, named: Sweep
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
     picture = drawn(page, "node 49 over flow rate")
     title = "place => place.data[0].colorbar.title.text"
-    assert picture.evaluate(title) == "orbit radius rms, node 49 [mm]"
+    assert picture.evaluate(title) == "lateral vibration, node 49 [mm]"
     until(page, lambda: held != [])
     held[0].continue_()
     until(page, lambda: " m [mm]" in picture.evaluate(title))
@@ -644,7 +669,7 @@ def test_names_do_without_the_depths_of_an_equilibrium_that_is_gone(
     with page.expect_response("**/statics?*"):
         page.goto(page.url.replace("#/nowhere", f"#/sweeps/{named.id}?view=map&colour=orbit_radius_rms_49"))
     picture = drawn(page, "node 49 over flow rate")
-    assert picture.evaluate("place => place.data[0].colorbar.title.text") == "orbit radius rms, node 49 [mm]"
+    assert picture.evaluate("place => place.data[0].colorbar.title.text") == "lateral vibration, node 49 [mm]"
     assert page.locator("#notices").text_content() == ""
     # The browser writes of every answer that refuses.
     troubles[:] = [text for text in troubles if "status of 410" not in text]
@@ -685,6 +710,111 @@ def test_a_sweep_whose_tables_have_expired_shows_what_is_left(
 def sweep_values(service: Service, sweep: Sweep, name: str) -> list[float]:
     with Client(service.server) as client:
         return list(client.sweep(sweep.id).table()[name])
+
+
+def test_points_are_ticked_and_compared(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&sort=orbit_radius_rms_49")
+    expect(page.get_by_role("button", name="Compare")).to_be_disabled()
+    for ordinal in (5, 2, 7):
+        page.get_by_role("checkbox", name=f"Compare point {ordinal}").check()
+    # A tick opens no point, and the link holds all of them.
+    assert "ticked=5%2C2%2C7" in page.url
+    page.get_by_role("link", name="Compare 3 points").click()
+    rows = page.get_by_role("table", name="Points compared").get_by_role("row")
+    expect(rows).to_have_count(3)
+    assert [f"point {ordinal}" in str(rows.nth(at).text_content()) for at, ordinal in enumerate((5, 2, 7))] == [
+        True
+    ] * 3
+    # At the node by which the table was sorted.
+    page.get_by_role("link", name="Statistics").click()
+    expect(page.get_by_text(re.compile("point 1 node 49 at .*; point 2 node 49 at"))).to_be_visible()
+
+
+def test_the_table_is_saved_as_it_is_shown(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&columns=ordinal,flow_rate,torque_top&sort=torque_top&order=down")
+    page.get_by_label("Filter, in units as shown").fill("flow_rate=0.04")
+    expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(4)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save as CSV").click()
+    assert download.value.suggested_filename.endswith(".csv")
+    rows = list(csv.DictReader(download.value.path().read_text().splitlines()))
+    table = named.table().to_pandas()
+    wanted = table[table["flow_rate"] == 0.04].sort_values("torque_top", ascending=False)
+    assert list(rows[0]) == ["ordinal", "flow_rate", "torque_top"]
+    assert {int(row["ordinal"]) for row in rows} == set(wanted["ordinal"])
+    assert [float(row["torque_top"]) for row in rows] == list(wanted["torque_top"])
+
+
+def test_titles_tell_sweeps_points_and_views_apart(opened: Opens, recorded: Sweep) -> None:
+    for view, title in [
+        (f"sweeps/{recorded.id}?view=table", "snapshots, Table"),
+        (f"sweeps/{recorded.id}/points/1", "Point 1 of snapshots, Profiles"),
+        (f"sweeps/{recorded.id}/points/1?view=energy", "Point 1 of snapshots, Energy"),
+        (f"compare?points={recorded.id}:1&view=energy", "Compare points, Energy"),
+    ]:
+        expect(opened(f"#/{view}")).to_have_title(f"{title} · drillsweep")
+
+
+def test_a_point_keeps_node_and_window_in_its_links(opened: Opens, named: Sweep, troubles: list[str]) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&sort=orbit_radius_rms_49")
+    page.get_by_role("link", name="2", exact=True).click()
+    page.get_by_role("link", name="Orbit, history, spectrum").click()
+    drawn(page, "Orbit of node 49")
+    page.get_by_label("From [s]").fill("0.3")
+    page.get_by_label("From [s]").blur()
+    until(page, lambda: "from=0.3" in page.url)
+    page.get_by_role("link", name="Next").click()
+    drawn(page, "Orbit of node 49")
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    page.get_by_role("link", name="Spectrogram").click()
+    drawn(page, "Spectrogram of node 49")
+    page.get_by_role("link", name="Compare", exact=True).last.click()
+    page.get_by_role("link", name="Statistics").click()
+    expect(page.get_by_text("point 1 node 49 at")).to_be_visible()
+    expect(page.get_by_label("From [s]")).to_have_value("0.3")
+    for view in ("motion", "spectrogram"):
+        page = opened(f"#/sweeps/{named.id}/points/1?view={view}&node=50")
+        expect(page.get_by_text("This point did not record node 50. It recorded node 10, node 49")).to_be_visible()
+    page.get_by_label("Node", exact=True).select_option("49")
+    drawn(page, "Spectrogram of node 49")
+
+
+def test_a_map_ends_at_its_samples_and_marks_them(opened: Opens, named: Sweep) -> None:
+    colour = "orbit_radius_rms_49"
+    page = opened(f"#/sweeps/{named.id}?view=map&colour={colour}&at.operation.rotation_speed_rpm=90")
+    picture = drawn(page, "over flow rate")
+    read = "place => place.data.map(({ type, x, y, text, customdata }) => ({ type, x, y, text, customdata }))"
+    table = named.table().to_pandas()
+    table = table[table["operation.rotation_speed_rpm"] == 90]
+    cells, samples, ringed = picture.evaluate(read)[:3]
+    assert [cells["x"][0], cells["x"][-1], cells["y"][0], cells["y"][-1]] == pytest.approx([0.01, 0.04, 1200, 1800])
+    assert sorted(zip(samples["x"], samples["y"], strict=True)) == [
+        (0.01, 1200),
+        (0.01, 1800),
+        (0.04, 1200),
+        (0.04, 1800),
+    ]
+    values = table.set_index("ordinal")[colour]
+    texts = [float(text.replace("<br>", "")) for text in samples["text"]]
+    printed = dict(zip(samples["customdata"], texts, strict=True))
+    assert printed == {ordinal: pytest.approx(1e3 * value, rel=6e-3) for ordinal, value in values.items()}
+    least, largest = values.idxmin(), values.idxmax()
+    assert ringed["customdata"] == [least, largest]
+    caption = page.get_by_role("region", name="Map").locator("figcaption")
+    expect(caption).to_contain_text(re.compile(f"Ringed: least .* mm at point {least}, largest .* at point {largest}"))
+    expect(caption).to_contain_text("Each cell has the colour of the sample in it")
+    page.get_by_label("Drawn as").select_option("contour")
+    expect(caption).to_contain_text("colours and lines between them are interpolated")
+    # A sample is opened by a click on its dot, that of the rim too.
+    box = picture.locator(".nsewdrag").first.bounding_box()
+    assert box is not None
+    spare = 0.03 / 1.06
+    page.mouse.move(box["x"] + (1 - spare) * box["width"] + 1, box["y"] + spare * box["height"] - 1, steps=3)
+    expect(picture.locator(".hoverlayer .hovertext")).to_be_visible()
+    page.mouse.down()
+    page.mouse.up()
+    corner = table[(table["flow_rate"] == 0.04) & (table["mud_density"] == 1800)]["ordinal"].iloc[0]
+    page.wait_for_url(f"**/sweeps/{named.id}/points/{corner}*")
 
 
 def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> None:
@@ -879,6 +1009,15 @@ def test_a_sweep_in_which_points_failed_is_marked_so(opened: Opens, failing: Swe
     assert page.locator(".state", has_text=re.compile("^completed$")).evaluate(mark) != [colour, sign]
 
 
+def test_a_failure_of_the_list_is_shown_with_its_cause(opened: Opens, failing: Sweep) -> None:
+    error = failing.point(1).error
+    assert error is not None
+    page = opened("#/sweeps", viewport={"width": 900, "height": 800})
+    reason = page.get_by_role("region", name="What failed lately").get_by_text(error.reason).first
+    expect(reason).to_be_visible()
+    assert reason.evaluate("element => element.scrollHeight <= element.clientHeight + 1")
+
+
 def test_the_tab_of_failures_counts_them_as_they_come(opened: Opens, client: Client) -> None:
     axes = {"flow_rate": [0.016, 0.017, 0.018]}
     changes = {**SHORT, "effects.contact": "off"}
@@ -940,6 +1079,7 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     order = "place => place.data[0].dimensions.map(({ name }) => name)"
     before = picture.evaluate(order)
     titles = picture.locator(".axis-title")
+    titles.first.scroll_into_view_if_needed()
     first, second = (titles.nth(number).bounding_box() for number in range(2))
     assert first is not None
     assert second is not None
@@ -951,6 +1091,20 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     until(page, lambda: f"order={'%2C'.join(moved)}" in page.url)
     copy = opened(f"#{page.url.partition('#')[2]}")
     assert drawn(copy, "Parallel coordinates").evaluate(order) == moved
+
+
+def test_names_of_parallel_axes_do_not_overlap_on_a_phone(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=parallel", viewport={"width": 390, "height": 844})
+    picture = drawn(page, "Parallel coordinates")
+    read = "place => [...place.querySelectorAll('.axis-title, .axis-extent-text')].map((text) => {"
+    read += " const { left, right, top, bottom } = text.getBoundingClientRect(); return [left, right, top, bottom]; })"
+    texts = [text for text in picture.evaluate(read) if text[1] > text[0]]
+    assert len(texts) >= 5 * 3
+    for at, (left, right, top, bottom) in enumerate(texts):
+        for other_left, other_right, other_top, other_bottom in texts[:at]:
+            assert right <= other_left or other_right <= left or bottom <= other_top or other_bottom <= top
+    # Its place is scrolled, not the page.
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_axes_of_parallel_coordinates_are_moved_by_the_keyboard(opened: Opens, named: Sweep) -> None:

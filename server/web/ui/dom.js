@@ -99,3 +99,17 @@ export function debounced(call, delay, signal) {
     if (!signal.aborted) timer = setTimeout(call, delay);
   };
 }
+
+/** Time after which a file has been taken [ms]. */
+const TAKEN_MS = 10_000;
+
+/**
+ * Saves a file.
+ * @param {Blob} blob
+ * @param {string} name
+ */
+export function download(blob, name) {
+  const url = URL.createObjectURL(blob);
+  h("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), TAKEN_MS);
+}

@@ -32,12 +32,13 @@ export function comparedIn(query) {
 /**
  * Links from a point to a comparison: a new one, and the one opened last with this point added.
  * @param {string} key of the point
+ * @param {Record<string, string>} [carried] node and window of a new comparison
  * @returns {{text: string, href: string}[]}
  */
-export function waysToCompare(key) {
+export function waysToCompare(key, carried = {}) {
   const last = lastComparison();
   const keys = comparedIn(last);
-  const fresh = { text: "Compare", href: link(["compare"], { points: key, view: "profiles" }) };
+  const fresh = { text: "Compare", href: link(["compare"], { points: key, view: "profiles", ...carried }) };
   if (!keys.length || (keys.length === 1 && keys[0] === key)) return [fresh];
   const isIn = keys.includes(key);
   if (!isIn && keys.length >= MOST) return [{ ...fresh, text: "New comparison" }];

@@ -1,6 +1,7 @@
 // Progress of a sweep, and moments in time, as elements.
 
 import { isFinal } from "../data/api.js";
+import { hasNotBegun } from "../data/queue.js";
 import { duration, moment } from "../data/units.js";
 import { h } from "./dom.js";
 
@@ -10,8 +11,9 @@ import { h } from "./dom.js";
  * State, bar and counts of a sweep.
  * @param {any} sweep
  * @param {Pace} pace
+ * @param {number} [before] sweeps before one that has not begun, if that is known
  */
-export function progressPart(sweep, pace) {
+export function progressPart(sweep, pace, before = 0) {
   const { counts } = sweep;
   const left = pace.left();
   const words = [`${counts.succeeded} of ${counts.total} succeeded`];
@@ -19,17 +21,20 @@ export function progressPart(sweep, pace) {
   const isMarked = sweep.state === "completed" && counts.failed > 0;
   if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
   if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
+  const isHeld = hasNotBegun(sweep);
+  if (isHeld && before) words.push(`behind ${before} ${before === 1 ? "sweep" : "sweeps"}`);
   if (sweep.state === "running")
     words.push(left === null ? "time left unknown" : `about ${duration(left)} left`);
   const percent = Math.floor(100 * sweep.progress);
+  const [shown, text] = isMarked
+    ? [counts.failed === counts.total ? "failed" : "partial", `${sweep.state}, ${counts.failed} failed`]
+    : isHeld
+      ? ["queued", "waiting"]
+      : [sweep.state, sweep.state];
   return h(
     "div",
     {},
-    h(
-      "span",
-      { class: `state ${isMarked ? (counts.failed === counts.total ? "failed" : "partial") : sweep.state}` },
-      isMarked ? `${sweep.state}, ${counts.failed} failed` : sweep.state,
-    ),
+    h("span", { class: `state ${shown}` }, text),
     !isFinal(sweep) && [
       h("span", { class: "soft small" }, ` ${percent} %`),
       h("progress", { value: sweep.progress, max: 1, "aria-label": `Progress: ${percent} %` }),

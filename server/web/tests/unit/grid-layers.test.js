@@ -88,10 +88,16 @@ test("values of a range are found in spite of rounding, linear and logarithmic",
   assert.deepEqual([rest.across, rest.up], [[0.5], [50]]);
 });
 
+test("cells meet halfway and end at the outermost values, beyond which nothing was computed", () => {
+  assert.deepEqual(ends([1, 4, 10], [1, 4, 10]), [1, 2.5, 7, 10]);
+  assert.deepEqual(ends([1, 4], [1, 4, 10]), [1, 2.5, 4]);
+  assert.deepEqual(ends([1, 100, 10_000], [1, 100, 10_000], true), [1, 10, 1000, 10_000]);
+});
+
 test("a single value's cell ends halfway to the next values", () => {
   assert.deepEqual(ends([4], [1, 4, 10]), [2.5, 7]);
-  assert.deepEqual(ends([1], [1, 4, 10]), [-0.5, 2.5]);
-  assert.deepEqual(ends([10], [1, 4, 10]), [7, 13]);
-  assert.deepEqual(ends([1, 4], [1, 4, 10]), [1, 4]);
-  assert.deepEqual(ends([4], [4]), [4]);
+  assert.deepEqual(ends([1], [1, 4, 10]), [1, 2.5]);
+  assert.deepEqual(ends([10], [1, 4, 10]), [7, 10]);
+  assert.deepEqual(ends([4], [4]), [3.8, 4.2]);
+  assert.deepEqual(ends([0], [0]), [-0.5, 0.5]);
 });

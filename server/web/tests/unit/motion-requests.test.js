@@ -41,8 +41,24 @@ test("a window of the link is taken if it is one, up to the end of the run", () 
 test("a node is requested by number or by depth; the first unless the link names another", () => {
   const { scenario } = point(null);
   assert.deepEqual(requests.selectedNode(scenario, query()), { node: 10 });
-  assert.deepEqual(requests.selectedNode(scenario, query("node=1")), { depth: 57.7, nearest: true });
+  assert.deepEqual(requests.selectedNode(scenario, query("node=57.7m")), {
+    depth: 57.7,
+    nearest: true,
+  });
   assert.deepEqual(requests.selectedNode(scenario, query("node=7")), { node: 10 });
+});
+
+test("a node of a link that was not recorded is named", () => {
+  const { scenario } = point(null);
+  assert.deepEqual(scenario.recording.nodes.map(requests.nodeInLink), ["10", "57.7m"]);
+  for (const [text, unrecorded] of [
+    ["", ""],
+    ["node=10", ""],
+    ["node=57.7m", ""],
+    ["node=1", "1"],
+    ["node=12m", "12m"],
+  ])
+    assert.equal(requests.unrecordedNode(scenario, query(text)), unrecorded);
 });
 
 test("a spectrum goes no farther than half the rate of its samples", () => {

@@ -6,6 +6,7 @@ import { near } from "./browser.js";
 import {
   amplitudes,
   biasOver,
+  comparedWindow,
   isUnsettled,
   orbitStatistics,
   recordedAs,
@@ -139,4 +140,37 @@ test("a point is unsettled by its regime or a growing mode", () => {
   assert.ok(isUnsettled("regular", 2.5));
   assert.ok(!isUnsettled("regular", null));
   assert.ok(!isUnsettled(undefined, undefined));
+});
+
+/** A complete point with its duration and the window of its statistics [s]. */
+function runOf(duration, orbit_window, summary = {}) {
+  return { scenario: { duration, recording: { orbit_window } }, summary };
+}
+
+test("points are compared in the window of their statistics if it is the same for all", () => {
+  const { from, to, isShared } = comparedWindow([runOf(60, null), runOf(60, { from: 40, to: 60 })]);
+  near(from, 40);
+  near(to, 60);
+  assert.ok(isShared);
+});
+
+test("a point without results has no say in the compared window", () => {
+  const { from, to, isShared } = comparedWindow([
+    runOf(60, { from: 15, to: 25 }),
+    runOf(60, null, null),
+    runOf(60, { from: 15, to: 25 }),
+  ]);
+  assert.deepEqual({ from, to, isShared }, { from: 15, to: 25, isShared: true });
+});
+
+test("windows that differ are compared in their overlap, or in the last third of the shortest run", () => {
+  assert.deepEqual(comparedWindow([runOf(60, { from: 15, to: 45 }), runOf(50, { from: 30, to: 50 })]), {
+    from: 30,
+    to: 45,
+    isShared: false,
+    isOverlap: true,
+  });
+  const { from, to, isShared, isOverlap } = comparedWindow([runOf(30, null), runOf(90, null)]);
+  near(from, 20);
+  assert.deepEqual({ to, isShared, isOverlap }, { to: 30, isShared: false, isOverlap: false });
 });

@@ -6,7 +6,7 @@ import { beforeEach, test } from "node:test";
 import { choose } from "../../data/settings.js";
 import { loadQuantities } from "../../data/units.js";
 import { changeOf, object, read, span, Unreadable, written } from "../../submit/values.js";
-import { conditions } from "../../sweep/table.js";
+import { conditions, tickedIn } from "../../sweep/table.js";
 
 await loadQuantities();
 beforeEach(() => choose("units", "si"));
@@ -84,4 +84,11 @@ test("conditions are in the units shown, to rounding", () => {
 test("a condition that cannot be read is named", () => {
   assert.match(conditions("flow_rate>0.02 nothing", ["flow_rate"]).problem, /: nothing is not\.$/);
   assert.equal(conditions("depth>3", ["flow_rate"]).problem, "There is no column depth.");
+});
+
+test("ticked points of a link are ordinals, each once, six at most", () => {
+  assert.deepEqual(tickedIn(""), []);
+  assert.deepEqual(tickedIn("3,12,3"), [3, 12]);
+  assert.deepEqual(tickedIn("a,-1,0,2.5,4"), [4]);
+  assert.equal(tickedIn("1,2,3,4,5,6,7").length, 6);
 });

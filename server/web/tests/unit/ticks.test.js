@@ -4,7 +4,7 @@ import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
-import { logTicks } from "../../draw/plots.js";
+import { exponentsOf, logTicks } from "../../draw/plots.js";
 
 const RANGES = [
   [2.27, 2.51],
@@ -35,4 +35,15 @@ test("ticks of a decade are one, two and five", () => {
 
 test("a range of one value has that value", () => {
   assert.deepEqual(logTicks(Math.log10(3), Math.log10(3)), { tickvals: [Math.log10(3)], ticktext: ["3"] });
+});
+
+test("axes are written in full, but for logarithmic ones and tiny values", () => {
+  const traces = [
+    { x: [-8000, 0], y: [1e-5, null] },
+    { x: [3], y: [2], yaxis: "y2" },
+  ];
+  assert.equal(exponentsOf("xaxis", {}, traces), "none");
+  assert.equal(exponentsOf("xaxis", { type: "log" }, traces), "power");
+  assert.equal(exponentsOf("yaxis", {}, traces), "power");
+  assert.equal(exponentsOf("yaxis2", {}, traces), "none");
 });

@@ -3,7 +3,8 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { near } from "./browser.js";
+import { near, QUANTITIES } from "./browser.js";
+import { FIELD_NAMES } from "../../data/field-names.js";
 import { choose } from "../../data/settings.js";
 import * as units from "../../data/units.js";
 
@@ -53,23 +54,41 @@ test("values are written with their units", () => {
 });
 
 test("names of columns are labels with node, depth, window and variant", () => {
-  const label = "orbit radius rms";
+  const label = "lateral vibration";
   assert.equal(units.label("orbit_radius_rms_49"), `${label}, node 49`);
   assert.equal(units.label("orbit_radius_rms_57_7m"), `${label} at 57.7 m`);
   assert.equal(units.label("orbit_radius_rms_980m"), `${label} at 980 m`);
   assert.equal(units.label("spread_orbit_radius_rms_49"), `spread of ${label}, node 49`);
   assert.match(units.label("line_frequency_hz_49_w2"), /, node 49, window 2$/);
+  assert.equal(units.label("largest_orbit_radius_rms"), `largest ${label} of all recorded nodes`);
+  assert.equal(units.label("largest_normal_force"), "largest side force");
   assert.equal(units.label("mud.density"), "mud density");
   assert.equal(units.label("unknown_name"), "unknown name");
+});
+
+test("columns of a node name it as links do", () => {
+  assert.equal(units.nodeOfColumn("orbit_radius_rms_49"), "49");
+  assert.equal(units.nodeOfColumn("line_frequency_hz_57_7m_w2"), "57.7m");
+  assert.equal(units.nodeOfColumn("friction_coefficient_max"), "");
+  assert.equal(units.nodeOfColumn(""), "");
 });
 
 test("units of variants are those of the quantity, but biases are shares", () => {
   assert.deepEqual(units.unit("orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("confidence_orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "", size: 1 });
-  assert.equal(units.title("orbit_radius_rms_49"), "orbit radius rms, node 49 [mm]");
+  assert.equal(units.title("orbit_radius_rms_49"), "lateral vibration, node 49 [mm]");
   assert.equal(units.servedUnit("orbit_radius_rms_49"), "m");
   assert.equal(units.servedUnit("friction_coefficient"), "");
+});
+
+test("the meaning of a column ends with the column's name in scripts", () => {
+  assert.match(units.meaning("torque_top"), /Column torque_top\.$/);
+  assert.equal(units.meaning("unknown_name"), "");
+});
+
+test("names of the field are of columns that the vocabulary has", () => {
+  for (const name of Object.keys(FIELD_NAMES)) assert.ok(name in QUANTITIES, name);
 });
 
 test("paths of a scenario are those of the vocabulary, whatever their indices", () => {
@@ -82,8 +101,11 @@ test("numbers have a few significant digits", () => {
   const written = [
     [0, "0"],
     [-3, "-3"],
-    [999999, "999999"],
-    [1234567, "1.235e6"],
+    [9999, "9999"],
+    [999999, "999\u202f999"],
+    [1234567, "1\u202f235\u202f000"],
+    [-12345.67, "-12\u202f350"],
+    [1.234567e9, "1.235e9"],
     [12.3456, "12.35"],
     [0.012346, "0.01235"],
     [0.00012346, "1.235e-4"],
@@ -97,12 +119,25 @@ test("a number that is written keeps its value to the digits written", () => {
   for (let power = -12; power <= 12; power += 1) {
     for (const digits of [2, 3, 4, 6]) {
       near(
-        Number(units.number(1.7320508 * 10 ** power, digits)),
+        Number(units.number(1.7320508 * 10 ** power, digits).replaceAll(units.THOUSANDS, "")),
         1.7320508 * 10 ** power,
         0.5 * 10 ** (1 - digits),
       );
     }
   }
+});
+
+test("large values have the unit that makes them short", () => {
+  assert.equal(units.say("kinetic", 1.37e6), "1.37 MJ");
+  assert.equal(units.say("kinetic", 9999), "9999 J");
+  assert.equal(units.say("kinetic", -20_000), "-20 kJ");
+  assert.equal(units.say("normal_force", 8e6), "8000 kN");
+  assert.equal(units.say("normal_force", 2.4e7), "24 MN");
+  assert.equal(units.say("mud_density", 12_345.6), "12\u202f350 kg/m³");
+  assert.deepEqual(units.suitedUnit("kinetic", [3, null, -5e7]), { symbol: "MJ", size: 1e6 });
+  assert.deepEqual(units.suitedUnit("kinetic", [3]), { symbol: "J", size: 1 });
+  choose("units", "field");
+  assert.equal(units.suitedUnit("kinetic", [5e7]).symbol, "ft·lbf");
 });
 
 test("durations and sizes have the unit that suits them", () => {

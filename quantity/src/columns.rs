@@ -469,7 +469,7 @@ quantities! {
     INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
     /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
     INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
-    /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet.
+    /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet; not_judged without loads.
     CLASS: "class", "", -, "class";
     /// Reason for which the class is uncertain: statistics have not settled, or the estimated error reaches across a limit.
     CLASS_UNCERTAIN: "class_uncertain", "", -, "uncertainty of the class";

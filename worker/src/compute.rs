@@ -510,7 +510,9 @@ mod tests {
             &tables::HISTORY,
             &tables::SNAPSHOTS,
             &tables::SPECTRA,
+            &tables::LINES,
             &tables::CONTACTS,
+            &tables::LOADS,
             &tables::ENERGY,
         ];
         assert_eq!(names, stored.iter().map(|layout| layout.name).collect());

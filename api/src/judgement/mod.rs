@@ -41,11 +41,13 @@ pub enum MotionClass {
     ForwardWhirl,
     /// None of the others.
     Quiet,
+    /// The result has no loads: there was no run in time, or an earlier version computed it.
+    NotJudged,
 }
 
 impl MotionClass {
     /// All classes, the most severe first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Failed,
         Self::Buckled,
         Self::StickSlip,
@@ -55,6 +57,7 @@ impl MotionClass {
         Self::Growing,
         Self::ForwardWhirl,
         Self::Quiet,
+        Self::NotJudged,
     ];
 
     /// The name in requests and responses.
@@ -69,6 +72,7 @@ impl MotionClass {
             Self::Growing => "growing",
             Self::ForwardWhirl => "forward_whirl",
             Self::Quiet => "quiet",
+            Self::NotJudged => "not_judged",
         }
     }
 }
@@ -112,7 +116,7 @@ impl Judgement {
         findings.extend(row.growing());
         findings.extend(row.whirl(limits, MotionClass::ForwardWhirl));
         if findings.is_empty() {
-            findings.push(row.quiet());
+            findings.push(row.quiet().unwrap_or_else(|| row.not_judged()));
         }
         Self::new(findings, limits)
     }
@@ -312,26 +316,30 @@ impl<'a> Row<'a> {
         ))
     }
 
-    fn quiet(self) -> Finding {
-        let mut parts = Vec::new();
+    fn quiet(self) -> Option<Finding> {
+        let acceleration = self.number(&LARGEST_LATERAL_ACCELERATION_RMS)?;
+        let depth = self.number(&LARGEST_LATERAL_ACCELERATION_RMS_DEPTH).unwrap_or(0.0);
+        let mut sentence = format!(
+            "Quiet: lateral acceleration at most {} g rms, at {depth:.1} m",
+            significant(units::ACCELERATION.shown.of(acceleration))
+        );
         if let Some(severity) = self.number(&BIT_STICK_SLIP_SEVERITY) {
-            parts.push(format!("stick-slip severity of the bit {}", significant(severity)));
+            sentence += &format!("; stick-slip severity of the bit {}", significant(severity));
         }
-        if let Some(acceleration) = self.number(&LARGEST_LATERAL_ACCELERATION_RMS) {
-            let depth = self.number(&LARGEST_LATERAL_ACCELERATION_RMS_DEPTH).unwrap_or(0.0);
-            let acceleration = significant(units::ACCELERATION.shown.of(acceleration));
-            parts.push(format!("lateral acceleration at most {acceleration} g rms, at {depth:.1} m"));
-        }
-        let details = if parts.is_empty() { "no run in time".to_owned() } else { parts.join("; ") };
-        self.finding(
-            MotionClass::Quiet,
-            format!("Quiet: {details}"),
-            &[
-                &BIT_STICK_SLIP_SEVERITY,
-                &LARGEST_LATERAL_ACCELERATION_RMS,
-                &LARGEST_LATERAL_ACCELERATION_RMS_DEPTH,
-            ],
-        )
+        let columns = [
+            &LARGEST_LATERAL_ACCELERATION_RMS,
+            &LARGEST_LATERAL_ACCELERATION_RMS_DEPTH,
+            &BIT_STICK_SLIP_SEVERITY,
+        ];
+        Some(self.finding(MotionClass::Quiet, sentence, &columns))
+    }
+
+    fn not_judged(self) -> Finding {
+        let reason = match self.text(&MOTION_REGIME) {
+            Some(_) => "the result is of an earlier version, without loads",
+            None => "there is no run in time",
+        };
+        self.finding(MotionClass::NotJudged, format!("Not judged: {reason}"), &[])
     }
 }
 
@@ -374,12 +382,16 @@ mod tests {
         assert_eq!(judgement.findings[0].evidence["bit_speed_min"], json!(-0.42));
         assert_eq!(judged(&row, "bit_stick_slip_severity:1.2").class, MotionClass::Quiet);
         assert_eq!(judged(&row, "bit_stick_slip_severity:off").class, MotionClass::Quiet);
+        assert_eq!(
+            judged(&json!({ "tension_top": 1.0 }), "").sentence,
+            "Not judged: there is no run in time"
+        );
     }
 
     #[test]
     fn a_column_above_its_limit_is_named_with_its_place() {
         let row = json!({
-            "motion_regime": "regular", "bit_stick_slip_severity": 0.2, "largest_side_force": 12e3, "largest_side_force_depth": 165.04,
+            "motion_regime": "regular", "bit_stick_slip_severity": 0.2, "largest_side_force": 12e3, "largest_lateral_acceleration_rms": 0.7, "largest_side_force_depth": 165.04,
         });
         assert_eq!(judged(&row, "").class, MotionClass::Quiet);
         let judgement = judged(&row, "largest_side_force:8000");

@@ -118,7 +118,7 @@ mod tests {
 
     fn point(ordinal: u32, severity: Option<f64>, error: f64) -> PointSummary {
         let summary = severity.map(|severity| {
-            json!({ "motion_regime": "regular", "bit_stick_slip_severity": severity, "whole_error": error }).to_string()
+            json!({ "motion_regime": "regular", "bit_stick_slip_severity": severity, "whole_error": error, "largest_lateral_acceleration_rms": 0.1 }).to_string()
         });
         PointSummary {
             ordinal,

@@ -58,6 +58,7 @@ async fn the_table_of_a_sweep_has_a_row_for_every_point() {
         json!({
             "ordinal": [1, 2],
             "state": ["succeeded", "failed"],
+            "class": ["not_judged", "failed"],
             "mud_density": [1200.0, 1500.0],
             "flow_rate": [0.01, 0.01],
             "steps": [10_000, null],
@@ -71,11 +72,11 @@ async fn the_table_of_a_sweep_has_a_row_for_every_point() {
         })
     );
     let csv = bench.get(&format!("{path}/table?format=csv")).await;
-    let header = "ordinal,state,mud_density,flow_rate,steps,density_seen,residual,resolved_hz,orbit_radius_rms_49,error,error_time,error_node";
+    let header = "ordinal,state,class,mud_density,flow_rate,steps,density_seen,residual,resolved_hz,orbit_radius_rms_49,error,error_time,error_node";
     assert_eq!(
         csv.text(),
         format!(
-            "{header}\n1,succeeded,1200.0,0.01,10000,1200.0,1e-9,200.0,0.001,,,\n2,failed,1500.0,0.01,,,,,,the state is not finite,1.25,49\n"
+            "{header}\n1,succeeded,not_judged,1200.0,0.01,10000,1200.0,1e-9,200.0,0.001,,,\n2,failed,failed,1500.0,0.01,,,,,,the state is not finite,1.25,49\n"
         )
     );
     let whole = bench.get(&format!("{path}/table?format=parquet")).await;

@@ -103,7 +103,7 @@ fn operating_window_follows_its_limits_without_new_runs() {
     let request = json!({
         "preset": "paper-200m",
         "set": { "accuracy": "draft", "duration": 0.4, "recording.orbit_window": { "from": 0.2, "to": 0.4 }, "recording.spectrum_windows": [] },
-        "axes": { "mud.density": [1200, 1500, 1800] },
+        "axes": { "mud.density": { "values": [1200, 1500, 1800] } },
     });
     let id = post(&format!("{server}/v1/sweeps"), &request)["id"].as_str().unwrap().to_owned();
     wait(&server, &id, completed);

@@ -191,8 +191,7 @@ mod tests {
                     std::thread::spawn(move || {
                         most.fetch_max(open.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
                         let fate = behaviour(requests.fetch_add(1, Ordering::SeqCst));
-                        let range = serve(stream.unwrap(), fate, &open);
-                        seen.lock().unwrap().extend(range);
+                        serve(stream.unwrap(), fate, &open, &seen);
                     });
                 }
             });
@@ -204,8 +203,8 @@ mod tests {
         }
     }
 
-    /// Answers one of the open requests; returns the range that was sent.
-    fn serve(mut stream: TcpStream, fate: Fate, open: &AtomicUsize) -> Option<Range<u64>> {
+    /// Answers one of the open requests, and enters the range that is sent into `seen`.
+    fn serve(mut stream: TcpStream, fate: Fate, open: &AtomicUsize, seen: &Mutex<Vec<Range<u64>>>) {
         let lines = BufReader::new(stream.try_clone().unwrap()).lines().map(Result::unwrap);
         let head: Vec<String> = lines.take_while(|line| !line.is_empty()).collect();
         let range = head.iter().find_map(|line| line.strip_prefix("range: bytes=")).unwrap();
@@ -223,11 +222,13 @@ mod tests {
         std::thread::sleep(Duration::from_millis(20));
         // Before the client, which has its answer, sends its next request.
         open.fetch_sub(1, Ordering::SeqCst);
+        if matches!(fate, Fate::Answer) {
+            seen.lock().unwrap().push(range);
+        }
         let head =
             format!("HTTP/1.1 {status}\r\ncontent-length: {}\r\nconnection: close\r\n\r\n", body.len());
         stream.write_all(head.as_bytes()).unwrap();
         stream.write_all(&body[..sent]).unwrap();
-        matches!(fate, Fate::Answer).then_some(range)
     }
 
     #[test]

@@ -165,6 +165,21 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             scenario.statics.friction.name()
         )?;
     }
+    writeln!(
+        text,
+        "  buckling            {:>10.2} of the sinusoidal load at {:.1} m",
+        statics.buckling.value, statics.buckling.measured_depth
+    )?;
+    if let Some(hydraulics) = &statics.hydraulics {
+        writeln!(
+            text,
+            "  standpipe pressure  {:>10.3} MPa; lost in the bore {:.3}, at the bit {:.3}, in the annulus {:.3} MPa",
+            hydraulics.standpipe_pressure / 1e6,
+            hydraulics.bore_loss / 1e6,
+            hydraulics.bit_loss / 1e6,
+            hydraulics.annulus_loss / 1e6
+        )?;
+    }
     if let (Some([least, largest]), Some([k_least, k_largest])) =
         (statics.friction_coefficient_range, statics.rotation_damping_range)
     {

@@ -105,6 +105,12 @@ quantities! {
     NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
     /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
     EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
+    /// Compression over the load from which the string buckles sinusoidally in its hole; 0 in tension, helical from sqrt(2) on.
+    BUCKLING_RATIO: "buckling_ratio", "", RATIO, "buckling ratio";
+    /// Largest compression of all elements over the load from which the string buckles sinusoidally in its hole.
+    LARGEST_BUCKLING_RATIO: "largest_buckling_ratio", "", RATIO, "largest buckling ratio of all elements";
+    /// Measured depth of the element's lower end with the largest buckling ratio.
+    LARGEST_BUCKLING_RATIO_DEPTH: "largest_buckling_ratio_depth", "", DEPTH, "depth of the largest buckling ratio";
     /// Torque in the string, G I_p theta_z', negative if it opposes clockwise rotation; at a node that of the element above it, at the first node below it.
     TORQUE: "torque", "T_0", TORQUE, "torque";
     /// Mean distance of the element's nodes from the hole's axis over the clearance of its body, at most 1.
@@ -163,6 +169,17 @@ quantities! {
     ANNULUS_PRESSURE: "annulus_pressure", "p_o", PRESSURE, "annulus pressure";
     /// Pressure in the bore at the middle of the element.
     BORE_PRESSURE: "bore_pressure", "p_i", PRESSURE, "bore pressure";
+
+    /// Pressure in the bore at the top of the string, without surface lines.
+    STANDPIPE_PRESSURE: "standpipe_pressure", "", PRESSURE, "standpipe pressure";
+    /// Pressure lost to friction in the annulus along the string.
+    ANNULUS_PRESSURE_LOSS: "annulus_pressure_loss", "", PRESSURE, "annulus pressure loss";
+    /// Pressure lost to friction in the bore along the string.
+    BORE_PRESSURE_LOSS: "bore_pressure_loss", "", PRESSURE, "bore pressure loss";
+    /// Pressure lost at the bit.
+    BIT_PRESSURE_LOSS: "bit_pressure_loss", "", PRESSURE, "bit pressure loss";
+    /// Equivalent circulating density at the bit: rise of the annulus pressure from the top of the string, over gravity and vertical depth.
+    EQUIVALENT_CIRCULATING_DENSITY: "equivalent_circulating_density", "ECD", MUD_DENSITY, "equivalent circulating density";
 
     // Contact with the wall over a run.
     /// Largest distance from the hole's axis.

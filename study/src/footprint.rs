@@ -198,7 +198,7 @@ impl PlannedSnapshots {
 /// Bytes of all tables that the scenario keeps, but for its snapshots.
 fn table_bytes(model: &Model, recorded: &Recorded) -> u64 {
     /// Columns of numbers of the profile, by element; of equilibrium, contacts and loads, by node.
-    const OF_ELEMENTS: usize = 24;
+    const OF_ELEMENTS: usize = 25;
     const OF_NODES: usize = 66;
     let double = size_of::<f64>();
     let small = (model.elements.len() * OF_ELEMENTS + model.node_count() * OF_NODES) * double;

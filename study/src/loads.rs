@@ -120,7 +120,7 @@ impl LoadSummary {
 }
 
 /// The largest of values, each with its depth; the uppermost of equal ones.
-fn worst(values: impl Iterator<Item = (f64, f64)>) -> Worst {
+pub(crate) fn worst(values: impl Iterator<Item = (f64, f64)>) -> Worst {
     let none = Worst { value: f64::NEG_INFINITY, measured_depth: 0.0 };
     values.fold(
         none,

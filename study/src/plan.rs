@@ -239,7 +239,7 @@ impl Plan {
         self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
         let start = scenario.statics.friction;
         let other = equilibrium.with_friction_at_rest(&model, start.other());
-        let statics = StaticsSummary::new(&equilibrium, start, other.as_ref().ok());
+        let statics = StaticsSummary::new(&model, &equilibrium, start, other.as_ref().ok());
         self.torque_top_break_away = statics.torque_top_break_away;
         self.torque_top_rotating = statics.torque_top_rotating;
         self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));

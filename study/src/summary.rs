@@ -4,13 +4,13 @@ use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use drillsweep_sim::force::effect::CONTACT_WORK;
 use serde::Serialize;
 
-use crate::loads::LoadSummary;
+use crate::loads::{LoadSummary, Worst, worst};
 use drillsweep_sim::math::signal::{
     FullSpectrum, PeakSearch, Whirl, Window, full_spectrum, sample_range, weighted_orbit_statistics,
 };
-use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::model::{GRAVITY, Model};
 use drillsweep_sim::solve::run::{ErrorEstimate, Histories, OrbitInterval, Records, Series, Settling};
-use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::solve::statics::{Equilibrium, buckling_ratios};
 
 /// Band of the summary's spectra \[Hz\]: covers the rotation speeds of drilling, as in the paper.
 const BAND_HZ: f64 = 20.0;
@@ -40,10 +40,29 @@ pub struct StaticsSummary {
     pub torque_top_rotating: Option<f64>,
     /// Torque of the lowest element \[N m\].
     pub torque_bit: f64,
+    /// Largest compression over the load from which an element buckles sinusoidally.
+    pub buckling: Worst,
+    /// Pressures of the mud; absent without mud.
+    pub hydraulics: Option<HydraulicsSummary>,
     /// Smallest and largest C_f along the string; absent without mud.
     pub friction_coefficient_range: Option<[f64; 2]>,
     /// Smallest and largest damping k along the string \[N s/m2\]; absent without mud.
     pub rotation_damping_range: Option<[f64; 2]>,
+}
+
+/// Pressures of the mud along the string.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HydraulicsSummary {
+    /// Pressure in the bore at the top \[Pa\].
+    pub standpipe_pressure: f64,
+    /// Pressure lost to friction in the annulus \[Pa\].
+    pub annulus_loss: f64,
+    /// Pressure lost to friction in the bore \[Pa\].
+    pub bore_loss: f64,
+    /// Pressure lost at the bit \[Pa\].
+    pub bit_loss: f64,
+    /// Rise of the annulus pressure over gravity and vertical depth \[kg/m3\]; absent if the bit is not below the top, or without gravity.
+    pub equivalent_circulating_density: Option<f64>,
 }
 
 /// Results of the run in time.
@@ -151,7 +170,12 @@ pub struct LineSummary {
 
 impl StaticsSummary {
     /// The sums of the equilibrium that a run starts from, and the torque at the top with the friction of the `other` start.
-    pub fn new(equilibrium: &Equilibrium, start: StartFriction, other: Option<&Equilibrium>) -> Self {
+    pub fn new(
+        model: &Model,
+        equilibrium: &Equilibrium,
+        start: StartFriction,
+        other: Option<&Equilibrium>,
+    ) -> Self {
         let end = |values: &[f64], last: bool| {
             if last { values.last() } else { values.first() }.copied().unwrap_or(0.0)
         };
@@ -168,9 +192,32 @@ impl StaticsSummary {
             torque_top_break_away: torque_of(StartFriction::BreakAway),
             torque_top_rotating: torque_of(StartFriction::Sliding),
             torque_bit: end(&equilibrium.torque, true),
+            buckling: {
+                let bottom = |e: usize| model.mesh.nodes[e + 1].measured_depth;
+                let ratios = buckling_ratios(model, equilibrium).into_iter().enumerate();
+                worst(ratios.map(|(e, ratio)| (ratio, bottom(e))))
+            },
+            hydraulics: HydraulicsSummary::of(model, equilibrium),
             friction_coefficient_range: range(equilibrium.flows.iter().map(|flow| flow.friction_coefficient)),
             rotation_damping_range: range(equilibrium.flows.iter().map(|flow| flow.rotation_damping)),
         }
+    }
+}
+
+impl HydraulicsSummary {
+    fn of(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
+        let pressures = equilibrium.pressures.as_ref()?;
+        let elements = || model.mesh.elements.iter().zip(&equilibrium.flows);
+        let (top, bottom) = (*pressures.annulus.first()?, *pressures.annulus.last()?);
+        let depth = model.frames.last()?.position.z - model.frames.first()?.position.z;
+        let has_density = depth > 0.0 && model.effects.gravity;
+        Some(Self {
+            standpipe_pressure: *pressures.bore.first()?,
+            annulus_loss: elements().map(|(element, flow)| flow.friction_gradient * element.length).sum(),
+            bore_loss: elements().map(|(element, flow)| flow.bore_friction_gradient * element.length).sum(),
+            bit_loss: pressures.bore.last()? - bottom,
+            equivalent_circulating_density: has_density.then(|| (bottom - top) / (GRAVITY * depth)),
+        })
     }
 }
 

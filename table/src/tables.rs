@@ -24,6 +24,7 @@ pub static PROFILE: Layout = Layout {
         &OUTER_DIAMETER,
         &INNER_DIAMETER,
         &EFFECTIVE_TENSION,
+        &BUCKLING_RATIO,
         &TORQUE,
         &ECCENTRICITY,
         &FRICTION_COEFFICIENT,

@@ -176,7 +176,7 @@ pub fn compute_from(
         }
         found => found.ok(),
     };
-    let statics = StaticsSummary::new(&equilibrium, friction, other_start.as_ref());
+    let statics = StaticsSummary::new(&model, &equilibrium, friction, other_start.as_ref());
     let statics_cost = started.elapsed();
 
     let started = Stopwatch::start();

@@ -13,7 +13,7 @@ use drillsweep_sim::solve::run::{
     ElementLoads, EnergyRow, Histories, LoadRecords, NodeLoads, OrbitInterval, Records, RmsAndPeak, Series,
     Settling, SnapshotSeries, SnapshotTimes,
 };
-use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::solve::statics::{Equilibrium, buckling_ratios};
 use drillsweep_study::ensemble::spread;
 use drillsweep_study::errors::OtherMember;
 use drillsweep_study::loads::{LoadSummary, Worst};
@@ -101,6 +101,15 @@ pub(crate) fn summary_row(
     if let Some([least, largest]) = statics.friction_coefficient_range {
         row.put(&FRICTION_COEFFICIENT_MIN, least);
         row.put(&FRICTION_COEFFICIENT_MAX, largest);
+    }
+    row.put(&LARGEST_BUCKLING_RATIO, statics.buckling.value);
+    row.put(&LARGEST_BUCKLING_RATIO_DEPTH, statics.buckling.measured_depth);
+    if let Some(hydraulics) = &statics.hydraulics {
+        row.put(&STANDPIPE_PRESSURE, hydraulics.standpipe_pressure);
+        row.put(&ANNULUS_PRESSURE_LOSS, hydraulics.annulus_loss);
+        row.put(&BORE_PRESSURE_LOSS, hydraulics.bore_loss);
+        row.put(&BIT_PRESSURE_LOSS, hydraulics.bit_loss);
+        row.put(&EQUIVALENT_CIRCULATING_DENSITY, hydraulics.equivalent_circulating_density);
     }
     if let Some([least, largest]) = statics.rotation_damping_range {
         row.put(&ROTATION_DAMPING_MIN, least);
@@ -278,6 +287,7 @@ fn profile(model: &Model, equilibrium: &Equilibrium) -> Table {
     numbers(&mut table, &OUTER_DIAMETER, elements.iter().map(|e| e.outer_diameter));
     numbers(&mut table, &INNER_DIAMETER, elements.iter().map(|e| e.inner_diameter));
     numbers(&mut table, &EFFECTIVE_TENSION, equilibrium.tension.iter().copied());
+    numbers(&mut table, &BUCKLING_RATIO, buckling_ratios(model, equilibrium).into_iter());
     numbers(&mut table, &TORQUE, equilibrium.torque.iter().copied());
     let flows = &equilibrium.flows;
     if flows.is_empty() {

@@ -52,17 +52,27 @@ pub enum LimitError {
 }
 
 /// Columns whose limits decide a class of their own.
-static OF_CLASSES: [&Quantity; 4] =
-    [&BIT_STICK_SLIP_SEVERITY, &BACKWARD_WHIRL_FRACTION, &FORWARD_WHIRL_FRACTION, &LARGEST_SHOCK_RATE_10G];
+static OF_CLASSES: [&Quantity; 5] = [
+    &LARGEST_BUCKLING_RATIO,
+    &BIT_STICK_SLIP_SEVERITY,
+    &BACKWARD_WHIRL_FRACTION,
+    &FORWARD_WHIRL_FRACTION,
+    &LARGEST_SHOCK_RATE_10G,
+];
 
 /// The default limits.
-pub fn limit_sources() -> [LimitSource; 7] {
+pub fn limit_sources() -> [LimitSource; 8] {
     let limit = |quantity: &'static Quantity, limit: f64, source| LimitSource {
         column: quantity.name,
         limit,
         source,
     };
     [
+        limit(
+            &LARGEST_BUCKLING_RATIO,
+            1.0,
+            "sinusoidal buckling load (Dawson and Paslay 1984; curved holes: He and Kyllingstad 1995)",
+        ),
         limit(
             &BIT_STICK_SLIP_SEVERITY,
             1.0,
@@ -128,7 +138,7 @@ impl OperatingLimits {
     }
 
     /// The same limits times a factor.
-    pub(super) fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self(self.0.iter().map(|(column, limit)| (column.clone(), factor * limit)).collect())
     }
 

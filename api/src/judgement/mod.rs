@@ -4,7 +4,6 @@
 
 mod limits;
 mod lines;
-mod window;
 
 use drillsweep_quantity::columns::*;
 use drillsweep_quantity::units::{self, Unit};
@@ -15,7 +14,6 @@ use serde_json::{Map, Value};
 
 pub use limits::{LimitError, LimitSource, OperatingLimits, limit_sources};
 pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes};
-pub use window::OperatingWindow;
 
 /// Class of a point, the most severe first.
 #[derive(
@@ -106,7 +104,7 @@ impl Judgement {
     pub fn of_row(row: &Map<String, Value>, limits: &OperatingLimits) -> Self {
         let row = Row(row);
         let found = [
-            row.buckling(),
+            row.buckling(limits),
             row.stick_slip(limits),
             row.whirl(limits, MotionClass::BackwardWhirl),
             row.impacts(limits),
@@ -163,20 +161,35 @@ impl<'a> Row<'a> {
         Finding { class, sentence, evidence: columns.iter().filter_map(value).collect() }
     }
 
-    fn buckling(self) -> Option<Finding> {
-        let kind = self.text(&INSTABILITY).filter(|kind| BUCKLING.contains(kind))?;
-        let by = match kind {
-            "buckling" => "compression",
-            "torque_buckling" => "torque",
-            _ => "the flow",
-        };
-        let rate = self.number(&INSTABILITY_GROWTH_RATE).unwrap_or(0.0);
-        let sentence =
-            format!("Buckled by {by}: small motions about the equilibrium grow with {rate:.3} 1/s");
-        Some(self.finding(
-            MotionClass::Buckled,
-            sentence,
-            &[&INSTABILITY, &INSTABILITY_GROWTH_RATE, &INSTABILITY_FREQUENCY_HZ],
+    /// Buckling by the stability of the equilibrium, or by the compression against its limit.
+    fn buckling(self, limits: &OperatingLimits) -> Option<Finding> {
+        let columns: [&Quantity; 5] = [
+            &INSTABILITY,
+            &INSTABILITY_GROWTH_RATE,
+            &INSTABILITY_FREQUENCY_HZ,
+            &LARGEST_BUCKLING_RATIO,
+            &LARGEST_BUCKLING_RATIO_DEPTH,
+        ];
+        let found = |sentence: String| Some(self.finding(MotionClass::Buckled, sentence, &columns));
+        if let Some(kind) = self.text(&INSTABILITY).filter(|kind| BUCKLING.contains(kind)) {
+            let by = match kind {
+                "buckling" => "compression",
+                "torque_buckling" => "torque",
+                _ => "the flow",
+            };
+            let rate = self.number(&INSTABILITY_GROWTH_RATE).unwrap_or(0.0);
+            return found(format!(
+                "Buckled by {by}: small motions about the equilibrium grow with {rate:.3} 1/s"
+            ));
+        }
+        let ratio = self.number(&LARGEST_BUCKLING_RATIO)?;
+        if ratio < limits.of(&LARGEST_BUCKLING_RATIO)? {
+            return None;
+        }
+        let shape = if ratio < std::f64::consts::SQRT_2 { "sinusoidal" } else { "helical" };
+        let depth = self.number(&LARGEST_BUCKLING_RATIO_DEPTH).unwrap_or(0.0);
+        found(format!(
+            "Buckled, {shape}: compression is {ratio:.2} of the sinusoidal buckling load at {depth:.1} m"
         ))
     }
 

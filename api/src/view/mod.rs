@@ -2,6 +2,7 @@
 
 pub mod history;
 pub mod node;
+pub mod operating_window;
 pub mod orbit;
 pub mod points;
 pub mod snapshots;

@@ -41,6 +41,10 @@ pub struct StringElement {
     pub load: ElementVector,
     /// Buoyed weight along the chord, downhole \[N\].
     pub axial_weight: f64,
+    /// Load across the chord in its frame: buoyed weight, and centrifugal load of the flows \[N/m\].
+    pub lateral_load: [f64; 2],
+    /// Curvature of the hole across the chord, in its frame \[1/m\].
+    pub curvature: [f64; 2],
     /// Nodal loads of 1 N/m upward along the chord, which the mud's drag multiplies.
     pub unit_drag: ElementVector,
 }
@@ -89,6 +93,7 @@ impl StringElement {
         let weight = chord.components(&Vector3::new(0.0, 0.0, terms.mass_per_length * acceleration));
         let distributed = std::array::from_fn(|axis| weight[axis] + terms.distributed[axis]);
         let load = beam.distributed_load(distributed) + terms.nodal;
+        let curvature = chord.components(&input.curvature);
         let to_nodes = |matrix: ElementMatrix| chord.matrix_to_nodes(&matrix);
         let initial_slopes = chord.tangent_rotations(input.frames[0], input.frames[1]);
         let of_slopes = |unit: &Option<ElementMatrix>| {
@@ -106,6 +111,8 @@ impl StringElement {
             torque_row: chord.vector_to_nodes(&beam.torque_row()),
             load: chord.vector_to_nodes(&load),
             axial_weight: distributed[2] * chord.length,
+            lateral_load: [distributed[0], distributed[1]],
+            curvature: [curvature[0], curvature[1]],
             unit_drag: chord.vector_to_nodes(&beam.distributed_load([0.0, 0.0, -1.0])),
             flow_geometry,
             momentum,

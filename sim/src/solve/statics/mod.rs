@@ -3,6 +3,7 @@
 //! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
+mod buckling;
 mod continuation;
 mod error;
 mod homotopy;
@@ -13,6 +14,7 @@ mod path;
 mod relaxation;
 mod touch;
 
+pub use buckling::buckling_ratios;
 pub use error::StaticsError;
 pub use newton::NewtonSettings;
 pub use overload::Overload;

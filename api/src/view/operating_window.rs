@@ -5,8 +5,8 @@ use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::{Judgement, MotionClass, OperatingLimits};
-use crate::view::points::PointSummary;
+use super::points::PointSummary;
+use crate::judgement::{Judgement, MotionClass, OperatingLimits};
 
 /// Operating window as it is put together point by point: a row a point with its parameters, its class by limits, whether the class is uncertain, and
 /// its finding in words. Points without a result have no class.

@@ -196,9 +196,9 @@ quantities! {
     STICK_TIME: "stick_time", "", TIME, "stick time";
 
     // Loads over the window of the statistics, from the ends of all steps.
-    /// Mean angular speed of the lateral motion about the hole's axis, weighted by the square of the distance; positive is forward, in the sense of the rotation.
+    /// Mean angular speed of the lateral motion about the hole's axis, weighted by the square of the distance; positive turns from u to v: forward, if the string turns clockwise.
     WHIRL_SPEED: "whirl_speed", "", ANGULAR_SPEED, "whirl speed";
-    /// Mean angular speed of the lateral motion about its mean position, weighted by the square of the distance; positive is forward, in the sense of the rotation.
+    /// Mean angular speed of the lateral motion about its mean position, weighted by the square of the distance; positive turns from u to v: forward, if the string turns clockwise.
     ORBIT_WHIRL_SPEED: "orbit_whirl_speed", "", ANGULAR_SPEED, "orbit's whirl speed";
     /// Share of the time in which the node moves forward about the hole's axis.
     FORWARD_FRACTION: "forward_fraction", "", RATIO, "forward share";

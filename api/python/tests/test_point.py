@@ -110,6 +110,26 @@ def test_a_spectrogram_is_the_spectra_of_its_windows(sweep: Sweep) -> None:
         np.testing.assert_allclose(amplitude[index], spectrum["amplitude"], rtol=1e-9, atol=1e-15)
 
 
+def test_loads_lines_and_diagnosis_agree_with_the_row(sweep: Sweep) -> None:
+    point = sweep.point(2)
+    loads, row = point.loads(), point.summary
+    assert row is not None
+    assert loads["lateral_acceleration_rms"].max() == row["largest_lateral_acceleration_rms"]
+    assert loads["rotation_speed_min"][-1] == row["bit_speed_min"]
+    worst = loads["equivalent_stress_peak"].argmax()
+    assert loads["measured_depth"][worst] == row["largest_equivalent_stress_depth"]
+    lines = point.lines()
+    diagnosis = point.diagnosis(limits={"bit_stick_slip_severity": None, "largest_side_force": 1.0})
+    assert [line["frequency_hz"] for line in diagnosis["lines"]] == list(lines["frequency"])
+    assert "bit_stick_slip_severity" not in diagnosis["limits"]
+    assert "over_limit" in {finding["class"] for finding in diagnosis["findings"]}
+    window = sweep.window(limits={"largest_side_force": 1.0})
+    index = list(window["ordinal"]).index(2)
+    default = point.diagnosis(limits={"largest_side_force": 1.0})
+    assert window["class"][index] == default["class"]
+    assert window["sentence"][index] == default["sentence"]
+
+
 def test_tables_come_as_arrays(sweep: Sweep) -> None:
     point = sweep.point(2)
     profile = point.profile()

@@ -18,17 +18,6 @@ const STANDARD_GRAVITY: f64 = 9.806_65;
 #[serde(transparent)]
 pub struct OperatingLimits(BTreeMap<String, f64>);
 
-/// Default limit of a column, with its source.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct LimitSource {
-    /// Column.
-    pub column: &'static str,
-    /// Limit in the column's unit.
-    pub limit: f64,
-    /// Source of the value.
-    pub source: &'static str,
-}
-
 /// Reason for which limits cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LimitError {
@@ -60,48 +49,31 @@ static OF_CLASSES: [&Quantity; 5] = [
     &LARGEST_SHOCK_RATE_10G,
 ];
 
-/// The default limits.
-pub fn limit_sources() -> [LimitSource; 8] {
-    let limit = |quantity: &'static Quantity, limit: f64, source| LimitSource {
-        column: quantity.name,
-        limit,
-        source,
-    };
-    [
-        limit(
-            &LARGEST_BUCKLING_RATIO,
-            1.0,
-            "sinusoidal buckling load (Dawson and Paslay 1984; curved holes: He and Kyllingstad 1995)",
-        ),
-        limit(
-            &BIT_STICK_SLIP_SEVERITY,
-            1.0,
-            "the bit just stops at its slowest, by definition of the severity",
-        ),
-        limit(&BACKWARD_WHIRL_FRACTION, 0.05, "chosen: more than a stand of a short assembly"),
-        limit(&FORWARD_WHIRL_FRACTION, 0.05, "chosen: more than a stand of a short assembly"),
-        limit(&LARGEST_SHOCK_RATE_10G, 1.0 / 60.0, "chosen: one shock a minute"),
-        limit(
-            &LARGEST_LATERAL_ACCELERATION_RMS,
-            2.0 * STANDARD_GRAVITY,
-            "2 g rms: from there on, field practice calls lateral vibration severe",
-        ),
-        limit(
-            &LARGEST_BENDING_STRESS,
-            20_000.0 * 6_894.757,
-            "20 ksi: largest bending stress for fatigue of grade S-135 without tension (API RP 7G, after Lubinski)",
-        ),
-        limit(
-            &LARGEST_EQUIVALENT_STRESS,
-            75_000.0 * 6_894.757,
-            "75 ksi: least yield strength of grade E (API Spec 5DP)",
-        ),
-    ]
-}
+/// One pound-force per square inch \[Pa\].
+const PSI: f64 = 6_894.757;
+
+/// The default limits, in the columns' units.
+static DEFAULTS: [(&Quantity, f64); 8] = [
+    // Sinusoidal buckling: Dawson and Paslay 1984, in curved holes He and Kyllingstad 1995.
+    (&LARGEST_BUCKLING_RATIO, 1.0),
+    // The bit just stops at its slowest.
+    (&BIT_STICK_SLIP_SEVERITY, 1.0),
+    // Chosen: more than a short assembly of a few hundred metres of string.
+    (&BACKWARD_WHIRL_FRACTION, 0.05),
+    (&FORWARD_WHIRL_FRACTION, 0.05),
+    // Chosen: one shock a minute.
+    (&LARGEST_SHOCK_RATE_10G, 1.0 / 60.0),
+    // Field practice calls lateral vibration severe from 2 to 3 g rms on.
+    (&LARGEST_LATERAL_ACCELERATION_RMS, 2.0 * STANDARD_GRAVITY),
+    // Fatigue of grade S-135 without tension: 20 ksi (API RP 7G, after Lubinski).
+    (&LARGEST_BENDING_STRESS, 20_000.0 * PSI),
+    // Least yield strength of grade E: 75 ksi (API Spec 5DP).
+    (&LARGEST_EQUIVALENT_STRESS, 75_000.0 * PSI),
+];
 
 impl Default for OperatingLimits {
     fn default() -> Self {
-        Self(limit_sources().into_iter().map(|limit| (limit.column.to_owned(), limit.limit)).collect())
+        Self(DEFAULTS.iter().map(|(column, limit)| (column.name.to_owned(), *limit)).collect())
     }
 }
 

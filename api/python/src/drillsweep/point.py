@@ -283,7 +283,7 @@ class Point:
         return self.view("contacts")
 
     def loads(self) -> Table:
-        """Loads of every node over the window of the statistics: accelerations, whirl, stick-slip, side force, stresses."""
+        """Loads of every node over the window of the statistics: accelerations, whirl, stick-slip, stresses."""
         return self.view("loads")
 
     def energy(self) -> Table:
@@ -295,7 +295,11 @@ class Point:
         return self.view("course")
 
     def diagnosis(self, limits: Mapping[str, float | None] | None = None) -> dict[str, Any]:
-        """Class of the motion by limits (a column's limit in its unit; None takes a default away), and causes of the spectral lines."""
+        """Class of the motion by limits, and causes of the spectral lines.
+
+        Args:
+            limits: Changes of the default limits, by column in the column's unit; None removes one.
+        """
         return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
 
     def cost(self) -> dict[str, Any]:

@@ -266,7 +266,11 @@ class Sweep:
         return Table.from_json(self._client.get_json(f"{self.path}/table"))
 
     def window(self, limits: Mapping[str, float | None] | None = None) -> Table:
-        """Operating window: parameters, class by limits (in the columns' units; None takes a default away) and finding of each point."""
+        """Operating window: parameters, class and finding of each point.
+
+        Args:
+            limits: Changes of the default limits, by column in the column's unit; None removes one.
+        """
         return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
 
     def verification(self) -> Table:

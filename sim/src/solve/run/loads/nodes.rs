@@ -24,8 +24,8 @@ const STANDSTILL: f64 = 0.05;
 pub struct NodeLoads {
     /// Root mean square distance from the mean position \[m\].
     pub orbit_radius_rms: f64,
-    /// Mean angular speed of the lateral motion about the hole's axis, weighted by the square of the distance \[rad/s\]; positive is forward, in the
-    /// sense of the rotation.
+    /// Mean angular speed of the lateral motion about the hole's axis, weighted by the square of the distance \[rad/s\]; positive turns from u to
+    /// v.
     pub whirl_speed: f64,
     /// The same about the mean position.
     pub orbit_whirl_speed: f64,

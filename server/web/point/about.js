@@ -5,7 +5,7 @@ import { bytes, duration, label, meaning, moment, number, say } from "../data/un
 import { fill, h } from "../ui/dom.js";
 
 /** Files that are tables, which are served as CSV, too. */
-const TABLES = ["profile", "statics", "history", "contacts", "energy", "snapshots"];
+const TABLES = ["profile", "statics", "history", "lines", "contacts", "loads", "energy", "snapshots"];
 
 /**
  * @param {import("./part.js").PointContext} context

@@ -127,9 +127,13 @@ fn operating_window_follows_its_limits_without_new_runs() {
     assert_eq!(limited["columns"]["mud.density"], json!([1200.0, 1500.0, 1800.0]));
     let table = get(&format!("{sweep}/table?fields=class&limits={off},largest_side_force:{middle}"));
     assert_eq!(table["columns"]["class"], limited["columns"]["class"]);
-    let picture =
-        ureq::get(format!("{sweep}/window?format=svg")).call().unwrap().body_mut().read_to_string().unwrap();
-    assert!(picture.starts_with("<svg"), "{picture}");
+    let picture = ureq::get(format!("{sweep}/window?format=svg&limits={off},largest_side_force:{middle}"))
+        .call()
+        .unwrap()
+        .body_mut()
+        .read_to_string()
+        .unwrap();
+    assert!(picture.contains("<svg") && picture.contains("over_limit"), "{picture}");
 
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
     for path in ["window", "points/1/diagnosis", "table"] {

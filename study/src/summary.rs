@@ -194,7 +194,7 @@ impl StaticsSummary {
             torque_bit: end(&equilibrium.torque, true),
             buckling: {
                 let bottom = |e: usize| model.mesh.nodes[e + 1].measured_depth;
-                let ratios = buckling_ratios(model, equilibrium).into_iter().enumerate();
+                let ratios = buckling_ratios(model, &equilibrium.tension).into_iter().enumerate();
                 worst(ratios.map(|(e, ratio)| (ratio, bottom(e))))
             },
             hydraulics: HydraulicsSummary::of(model, equilibrium),

@@ -287,7 +287,7 @@ fn profile(model: &Model, equilibrium: &Equilibrium) -> Table {
     numbers(&mut table, &OUTER_DIAMETER, elements.iter().map(|e| e.outer_diameter));
     numbers(&mut table, &INNER_DIAMETER, elements.iter().map(|e| e.inner_diameter));
     numbers(&mut table, &EFFECTIVE_TENSION, equilibrium.tension.iter().copied());
-    numbers(&mut table, &BUCKLING_RATIO, buckling_ratios(model, equilibrium).into_iter());
+    numbers(&mut table, &BUCKLING_RATIO, buckling_ratios(model, &equilibrium.tension).into_iter());
     numbers(&mut table, &TORQUE, equilibrium.torque.iter().copied());
     let flows = &equilibrium.flows;
     if flows.is_empty() {

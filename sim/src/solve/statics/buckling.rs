@@ -1,17 +1,16 @@
 //! Compression of a string against its buckling load.
 
-use super::Equilibrium;
 use crate::solve::model::{Model, StringElement};
 
 /// Factor of Lubinski's critical load of a string in a vertical hole, in (E I w^2)^(1/3) (Lubinski 1950, first order).
 const VERTICAL: f64 = 1.94;
 
-/// Compression of every element over the load from which it buckles sinusoidally in its hole; 0 in tension, from sqrt(2) on helical.
+/// Compression of every element, of effective tension `tension` \[N\], over the load from which it buckles sinusoidally in its hole; 0 in tension, from sqrt(2) on helical.
 ///
 /// The load is 2 sqrt(E I f / r) with the side load f of the element pressed against the wall, by its weight and by its compression in a curved hole, and the
 /// radial clearance r of its body (Dawson and Paslay 1984; in curved holes He and Kyllingstad 1995); at least that of a vertical hole. An element without
 /// weight, or without clearance, has no such load: 0.
-pub fn buckling_ratios(model: &Model, equilibrium: &Equilibrium) -> Vec<f64> {
+pub fn buckling_ratios(model: &Model, tension: &[f64]) -> Vec<f64> {
     let hole_diameter = model.scenario.well.hole_diameter;
     let ratio = |(element, tension): (&StringElement, &f64)| {
         let section = element.beam.section();
@@ -24,7 +23,7 @@ pub fn buckling_ratios(model: &Model, equilibrium: &Equilibrium) -> Vec<f64> {
         let load = inclined.max(vertical);
         if load > 0.0 && load.is_finite() { (-tension / load).max(0.0) } else { 0.0 }
     };
-    model.elements.iter().zip(&equilibrium.tension).map(ratio).collect()
+    model.elements.iter().zip(tension).map(ratio).collect()
 }
 
 #[cfg(test)]
@@ -32,13 +31,14 @@ mod tests {
     use drillsweep_scenario::preset;
 
     use super::*;
+    use crate::solve::statics::Equilibrium;
 
     #[test]
     fn presets_near_and_beyond_buckling_are_where_their_loads_put_them() {
         let largest = |name: &str| {
             let model = Model::new(&preset(name).unwrap()).unwrap();
             let equilibrium = Equilibrium::find(&model).unwrap();
-            buckling_ratios(&model, &equilibrium).into_iter().fold(0.0, f64::max)
+            buckling_ratios(&model, &equilibrium.tension).into_iter().fold(0.0, f64::max)
         };
         // Chosen at 0.7 of the sinusoidal load.
         let near = largest("hard/near-buckling");

@@ -1,0 +1,35 @@
+"""Classes of points in a real browser: the headline of a point, causes of lines, and classes over a sweep."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import expect
+
+from browsing import Opens
+from drillsweep import Client, Sweep
+
+
+def test_a_point_begins_with_its_class_and_the_numbers_behind_it(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1")
+    judged = page.get_by_role("region", name="Judgement")
+    diagnosis = sweep.point(1).diagnosis()
+    first, *others = diagnosis["findings"]
+    expect(judged.locator(".verdict > p")).to_have_text(f"{first['class'].replace('_', ' ')} {first['sentence']}")
+    assert judged.locator("li").count() == len(others)
+    summary = sweep.point(1).summary
+    side_force = judged.locator("div", has=page.get_by_text("Largest side force", exact=True)).last.locator("dd")
+    force, depth = (float(number) for number in re.findall(r"[\d.]+", side_force.inner_text())[:2])
+    assert abs(force - summary["largest_side_force"] / 1e3) <= 0.01 * force
+    assert abs(depth - summary["largest_side_force_depth"]) <= 0.001 * depth
+    page.get_by_role("button", name="Units: SI. Switch").click()
+    expect(side_force).to_contain_text("klbf")
+
+
+def test_a_point_without_a_result_has_no_headline(opened: Opens, client: Client) -> None:
+    waiting = client.submit("paper-200m", name="waiting", priority=-10)
+    waiting.cancel()
+    page = opened(f"#/sweeps/{waiting.id}/points/1")
+    expect(page.get_by_role("heading", name="Point 1")).to_be_visible()
+    expect(page.get_by_role("status").filter(has_text="result")).to_be_visible()
+    expect(page.get_by_role("region", name="Judgement")).to_have_count(0)

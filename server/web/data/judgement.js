@@ -56,3 +56,28 @@ export function headlineNumbers(summary) {
     };
   });
 }
+
+/**
+ * The line of a diagnosis that a line of a node's spectrum is: of the same sense of whirl, within half the resolution of the coarser window, and of a
+ * window that overlaps the spectrum's, most of all.
+ * @param {LineCause[]} lines
+ * @param {{node: number, frequency: number, resolution: number, window: {from: number, to: number}}} line [Hz], [s]
+ * @returns {LineCause | null}
+ */
+export function causeOf(lines, { node, frequency, resolution, window }) {
+  const overlap = (/** @type {LineCause} */ { window: [from, to] }) =>
+    Math.min(to, window.to) - Math.max(from, window.from);
+  const distance = (/** @type {LineCause} */ line) => Math.abs(line.frequency_hz - frequency);
+  const isIt = (/** @type {LineCause} */ line) =>
+    line.node === node &&
+    line.frequency_hz * frequency > 0 &&
+    overlap(line) > 0 &&
+    distance(line) <= Math.max(resolution, 1 / (line.window[1] - line.window[0])) / 2;
+  const found = lines.filter(isIt).sort((a, b) => overlap(b) - overlap(a) || distance(a) - distance(b));
+  return found[0] ?? null;
+}
+
+/** The cause of a line in words, without its frequency. @param {LineCause} line */
+export function causeWords({ sentence }) {
+  return sentence.replace(/^[+-][\d.]+ Hz: /, "");
+}

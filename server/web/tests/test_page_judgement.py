@@ -8,6 +8,7 @@ from playwright.sync_api import expect
 
 from browsing import Opens
 from drillsweep import Client, Sweep
+from service import SHORT
 
 
 def test_a_point_begins_with_its_class_and_the_numbers_behind_it(opened: Opens, sweep: Sweep) -> None:
@@ -33,3 +34,23 @@ def test_a_point_without_a_result_has_no_headline(opened: Opens, client: Client)
     expect(page.get_by_role("heading", name="Point 1")).to_be_visible()
     expect(page.get_by_role("status").filter(has_text="result")).to_be_visible()
     expect(page.get_by_role("region", name="Judgement")).to_have_count(0)
+
+
+def test_lines_of_a_spectrum_have_the_causes_of_the_diagnosis(opened: Opens, client: Client) -> None:
+    window = {"from": 0.1, "to": 0.5}
+    changes = SHORT | {"recording.spectrum_windows": [window]}
+    point = client.submit("paper-200m", set=changes, name="causes").wait(timeout=120.0).point(1)
+    lines = [line for line in point.diagnosis()["lines"] if line["node"] == 49 and "cause" in line]
+    assert lines
+    page = opened(f"#{point.path.removeprefix('/v1')}?view=motion&node=49&from=0.1&to=0.5&range=100")
+    cells = page.locator("[data-frequency]")
+    expect(cells.first).not_to_have_text("\N{HORIZONTAL ELLIPSIS}", timeout=60_000)
+    shown = {float(cell.get_attribute("data-frequency") or "nan"): cell.inner_text() for cell in cells.all()}
+    near = {
+        frequency: min(lines, key=lambda line: abs(line["frequency_hz"] - frequency))
+        for frequency in shown
+        if any(abs(line["frequency_hz"] - frequency) < 1e-3 for line in lines)
+    }
+    assert near
+    for frequency, line in near.items():
+        assert line["sentence"].endswith(f" Hz: {shown[frequency]}")

@@ -3,7 +3,7 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { CLASSES, headlineNumbers, rankOf } from "../../data/judgement.js";
+import { causeOf, causeWords, CLASSES, headlineNumbers, rankOf } from "../../data/judgement.js";
 import { choose } from "../../data/settings.js";
 import { loadQuantities } from "../../data/units.js";
 import { BLACK, classColour, inkOnClass, WHITE } from "../../draw/colours.js";
@@ -51,6 +51,36 @@ test("classes are ranked by severity, and unknown ones come last", () => {
   assert.ok(rankOf("failed") < rankOf("stick_slip"));
   assert.ok(rankOf("stick_slip") < rankOf("quiet"));
   assert.ok(rankOf("new_class") > rankOf("not_judged"));
+});
+
+const lineAt = (frequency_hz, node = 49, window = [40, 60]) => ({
+  node,
+  window,
+  frequency_hz,
+  sentence: `${frequency_hz} of ${node} from ${window[0]}`,
+});
+const DIAGNOSED = [lineAt(2.16), lineAt(-2.16), lineAt(2.17, 10), lineAt(2.18, 49, [0, 10]), lineAt(4.3)];
+const causeAt = (frequency, { window = { from: 40, to: 60 }, resolution = 0.05, node = 49 } = {}) =>
+  causeOf(DIAGNOSED, { node, frequency, resolution, window })?.sentence ?? null;
+
+test("a spectral line has the cause of the diagnosed line of its node, whirl and window", () => {
+  assert.equal(causeAt(2.17), "2.16 of 49 from 40");
+  assert.equal(causeAt(-2.15), "-2.16 of 49 from 40");
+  assert.equal(causeAt(2.16, { node: 10 }), "2.17 of 10 from 40");
+  assert.equal(causeAt(2.22), null);
+  assert.equal(causeAt(-4.3), null);
+});
+
+test("a window that is chosen has the causes of the diagnosed window that it overlaps most", () => {
+  assert.equal(causeAt(2.16, { window: { from: 0, to: 30 }, resolution: 0.04 }), "2.18 of 49 from 0");
+  assert.equal(causeAt(2.16, { window: { from: 5, to: 60 }, resolution: 0.04 }), "2.16 of 49 from 40");
+  assert.equal(causeAt(2.16, { window: { from: 15, to: 35 } }), null);
+});
+
+test("a cause in words leaves the frequency out, which stands next to it", () => {
+  const words = (sentence) => causeWords({ sentence });
+  assert.equal(words("-2.16 Hz: the torsional mode at 2.162 Hz"), "the torsional mode at 2.162 Hz");
+  assert.equal(words("+5.30 Hz: no cause found"), "no cause found");
 });
 
 /** Red, green and blue in linear light. */

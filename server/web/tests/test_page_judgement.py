@@ -6,7 +6,7 @@ import re
 
 from playwright.sync_api import expect
 
-from browsing import Opens
+from browsing import Opens, drawn
 from drillsweep import Client, Sweep
 from service import SHORT
 
@@ -54,3 +54,21 @@ def test_lines_of_a_spectrum_have_the_causes_of_the_diagnosis(opened: Opens, cli
     assert near
     for frequency, line in near.items():
         assert line["sentence"].endswith(f" Hz: {shown[frequency]}")
+
+
+def test_a_class_is_a_word_of_the_table_and_of_the_map(opened: Opens, sweep: Sweep, client: Client) -> None:
+    classes = list(sweep.table()["class"])
+    words = [str(word).replace("_", " ") for word in classes]
+    page = opened(f"#/sweeps/{sweep.id}?view=table")
+    shown = page.get_by_role("table", name="Points").locator(".class-word")
+    expect(shown).to_have_text(words)
+    colours = {str(shown.nth(row).evaluate("word => word.style.background")) for row in range(len(words))}
+    assert len(colours) == len(set(words))
+    page.goto("about:blank")
+    page.goto(f"{client.server}/#/sweeps/{sweep.id}?view=map&colour=class")
+    picture = drawn(page, "class over")
+    read = "place => [place.data[0].colorbar.ticktext, place.data[0].colorscale.map(([, colour]) => colour)]"
+    names, scale = picture.evaluate(read)
+    assert sorted(names) == sorted(set(words))
+    rgb = {f"rgb({int(one[1:3], 16)}, {int(one[3:5], 16)}, {int(one[5:7], 16)})" for one in scale}
+    assert rgb == colours

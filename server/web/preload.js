@@ -17,6 +17,7 @@ const preload = (() => {
   const PARTS = {
     sweep: {
       map: "sweep/map.js",
+      window: "sweep/window.js",
       scatter: "sweep/scatter.js",
       parallel: "sweep/parallel.js",
       effects: "sweep/sensitivities.js",

@@ -75,8 +75,14 @@ export function map(context) {
   };
 }
 
-class SweepMap {
+/**
+ * Column that a map shows and that the table lacks: its name, and its word and the reason for doubt of each point.
+ * @typedef {{name: string, wordOf: (ordinal: number) => string | null, doubtOf: (ordinal: number) => string}} Own
+ */
+
+export class SweepMap {
   #context;
+  #own;
   #place = canvas("Map of the sweep", "map", "tall");
   #caption = h("figcaption", {});
   #controls = h("div", { class: "controls" });
@@ -91,11 +97,12 @@ class SweepMap {
   /** Values that the slice drawn last holds: a finer grid belongs to the slice that is shown. */
   #sliceBefore = "";
 
-  /** @param {Context} context */
-  constructor(context) {
+  /** @param {Context} context @param {Own | null} [own] */
+  constructor(context, own = null) {
     this.#context = context;
+    this.#own = own;
     this.#region = new FinerGrid(context);
-    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context).colour));
+    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context, own).colour));
     this.#figure = h("figure", {}, this.#place, this.#caption, this.#cursor.element);
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
     this.#region.element.addEventListener("closed", () => {
@@ -116,18 +123,21 @@ class SweepMap {
   async redraw() {
     const isNewest = this.#begin();
     const context = this.#context;
-    const chosen = chosenIn(context);
+    const chosen = chosenIn(context, this.#own);
     if (!chosen.x) {
       fill(this.element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
       return;
     }
-    const slice = await readSlice(context, chosen);
+    const slice = await readSlice(context, chosen, this.#own);
     if (!isNewest()) return;
     fill(this.#controls, this.#controlsPart(chosen, slice));
     this.#updateRegion(chosen, slice);
     const { states } = slice;
     const isAllFailed =
-      !context.query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
+      !this.#own &&
+      !context.query.has("colour") &&
+      states.length > 0 &&
+      states.every((state) => state === "failed");
     this.#empty.hidden = !isAllFailed;
     this.#figure.hidden = isAllFailed;
     if (isAllFailed) {
@@ -161,7 +171,7 @@ class SweepMap {
     return [
       choice("Across", named(axes), x, set("x")),
       y && choice("Up", named(axes.filter((axis) => axis !== x)), y, set("y")),
-      choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
+      results.length > 1 && choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
       !words &&
         choice(
           "Scale",
@@ -327,7 +337,8 @@ class SweepMap {
     if (doubtful.length) {
       const thin = { symbol: "x-thin-open", line: { width: doubtful.length > MANY ? 1 : 2 } };
       const rimmed = { symbol: "x", color: inks().text, line: { width: 1, color: inks().panel } };
-      traces.push(crosses(NOT_SETTLED, doubtful, isClass ? rimmed : thin, chosen, slice, at));
+      const name = this.#own ? "uncertain" : NOT_SETTLED;
+      traces.push(crosses(name, doubtful, isClass ? rimmed : thin, chosen, slice, at));
     }
     this.#cursor.over(places);
     const axis = (/** @type {string} */ name, /** @type {Values} */ column) => ({
@@ -353,18 +364,18 @@ class SweepMap {
     });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context).colour);
+      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context, this.#own).colour);
     });
   }
 }
 
-/** @param {Context} context @returns {Chosen} */
-function chosenIn({ axes, table, query }) {
+/** @param {Context} context @param {Own | null} [own] @returns {Chosen} */
+function chosenIn({ axes, table, query }, own) {
   const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
   const x = axes.includes(get("x", "")) ? get("x", "") : axes[0];
   const others = axes.filter((axis) => axis !== x);
   const y = others.includes(get("y", "")) ? get("y", "") : others[0];
-  const results = table.results().filter((name) => !axes.includes(name));
+  const results = own ? [own.name] : table.results().filter((name) => !axes.includes(name));
   const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
   return {
     x,
@@ -382,22 +393,24 @@ function spoken(word) {
   return word.replaceAll("_", " ");
 }
 
-/** Reads the columns that a map shows. @param {Context} context @param {Chosen} chosen @returns {Promise<Slice>} */
-async function readSlice({ sweep, table, query }, { x, y, colour, held: heldNames }) {
+/** Reads the columns that a map shows. @param {Context} context @param {Chosen} chosen @param {Own | null} own @returns {Promise<Slice>} */
+async function readSlice({ sweep, table, query }, { x, y, colour, held: heldNames }, own) {
   const present = SETTLING.filter((name) => table.names.includes(name));
-  const [ordinals, states, xs, ys, values, ...others] = await table.columns(
+  const [ordinals, states, xs, ys, found, ...others] = await table.columns(
     "ordinal",
     "state",
     x,
     y ?? x,
-    colour,
+    own ? "state" : colour,
     ...heldNames,
     ...present,
   );
   const settling = others.slice(heldNames.length);
   const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) =>
     settling[present.indexOf(name)]?.[index];
+  const values = own ? ordinals.map((ordinal) => own.wordOf(Number(ordinal))) : found;
   const doubts = (/** @type {number} */ index) => {
+    if (own) return own.doubtOf(Number(ordinals[index]));
     const isDoubtful = isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
     return isDoubtful ? NOT_SETTLED : "";
   };

@@ -23,8 +23,8 @@ import { attend } from "../ui/notices.js";
 
 /**
  * A view of a sweep's points: its element, how it is drawn anew when there are further results, the columns that it shows, and those
- * of other sweeps.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[]}} Part
+ * of other sweeps; or else the lines that get what it shows.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[], lines?: () => import("../ui/snippets.js").Lines}} Part
  */
 
 /** Points beyond which marks are drawn by WebGL. */

@@ -141,7 +141,7 @@ def test_a_survey_is_pasted_from_a_spreadsheet(opened: Opens) -> None:
     expect(page.get_by_role("button", name="Submit")).to_be_disabled()
 
 
-@pytest.mark.parametrize("view", ["map", "scatter", "parallel", "effects", "difference", "table", "failures"])
+@pytest.mark.parametrize("view", ["map", "window", "scatter", "parallel", "effects", "difference", "table", "failures"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_every_view_of_a_sweep_is_shown(
     opened: Opens, named: Sweep, view: str, theme: Literal["light", "dark"]
@@ -464,7 +464,7 @@ def test_no_view_keeps_anybody_out(
     opened: Opens, server: str, named: Sweep, sweep: Sweep, theme: Literal["light", "dark"]
 ) -> None:
     views = ["", "#/new?preset=paper-200m", "#/compare", f"#/compare?points={named.id}:1,{named.id}:2&view=orbit"]
-    parts = ["map", "scatter", "parallel", "effects", "table", "failures", f"difference&with={sweep.id}"]
+    parts = ["map", "window", "scatter", "parallel", "effects", "table", "failures", f"difference&with={sweep.id}"]
     views += [f"#/sweeps/{named.id}?view={view}" for view in parts]
     views += [f"#/sweeps/{named.id}/points/1?view={view}" for view in POINT_VIEWS]
     page = opened("", color_scheme=theme)
@@ -583,7 +583,7 @@ def test_the_page_recovers_when_the_server_comes_back(opened: Opens, troubles: l
 
 def test_a_phone_shows_every_view_without_sideways_scrolling(opened: Opens, named: Sweep, sweep: Sweep) -> None:
     views = ["", "#/new", f"#/sweeps/{named.id}?view=difference&with={sweep.id}", f"#/compare?points={named.id}:1"]
-    views += [f"#/sweeps/{named.id}?view={view}" for view in ("map", "table")]
+    views += [f"#/sweeps/{named.id}?view={view}" for view in ("map", "window", "table")]
     views += [f"#/sweeps/{named.id}/points/1?view={view}" for view in POINT_VIEWS]
     for view in views:
         page = opened(view, viewport={"width": 390, "height": 844})

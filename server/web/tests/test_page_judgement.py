@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from playwright.sync_api import expect
 
-from browsing import Opens, drawn
+from browsing import Opens, drawn, run_curl, run_python, shown_lines, until
 from drillsweep import Client, Sweep
 from service import SHORT
 
@@ -72,3 +73,47 @@ def test_a_class_is_a_word_of_the_table_and_of_the_map(opened: Opens, sweep: Swe
     assert sorted(names) == sorted(set(words))
     rgb = {f"rgb({int(one[1:3], 16)}, {int(one[3:5], 16)}, {int(one[5:7], 16)})" for one in scale}
     assert rgb == colours
+
+
+def test_limits_that_are_moved_judge_the_points_anew(opened: Opens, sweep: Sweep, tmp_path: Path) -> None:
+    page = opened(f"#/sweeps/{sweep.id}?view=window")
+    counts = page.get_by_role("list", name="Points by class")
+    picture = drawn(page, "class over")
+
+    def shows(limits: dict[str, float | None]) -> None:
+        window = sweep.window(limits)
+        for name, count in window.attributes["points_by_class"].items():
+            expect(counts.get_by_role("listitem").filter(has_text=f"{name.replace('_', ' ')} {count}")).to_be_visible()
+        uncertain = [reason for reason in window["class_uncertain"] if reason]
+        if uncertain:
+            expect(page.get_by_text(re.compile(f"^{len(uncertain)} uncertain point"))).to_be_visible()
+        words = {str(name).replace("_", " ") for name in window["class"]}
+        until(page, lambda: set(picture.evaluate("place => place.data[0].colorbar.ticktext")) == words)
+
+    shows({})
+    name = "largest equivalent stress of all elements"
+    page.get_by_label(f"{name} [MPa]", exact=True).fill("1")
+    shows({"largest_equivalent_stress": 1e6})
+    until(page, lambda: "limits=largest_equivalent_stress%3A1000000" in page.url)
+    table = page.get_by_role("link", name="Table (JSON)").get_attribute("href") or ""
+    assert "limits=largest_equivalent_stress%3A1000000" in table
+    lines = shown_lines(page)
+    assert "class_uncertain" in run_curl(lines["curl"], tmp_path)[""]
+    assert "class_uncertain" in run_python(lines["Python"])["table"]
+    page.get_by_role("checkbox", name=f"Limit of {name}").uncheck()
+    shows({"largest_equivalent_stress": None})
+    slider = page.get_by_label("Slider: stick-slip severity of the bit", exact=True)
+    assert float(slider.get_attribute("max") or "nan") == 2.0
+    slider.fill("0.01")
+    shows({"largest_equivalent_stress": None, "bit_stick_slip_severity": 0.01})
+
+
+def test_a_link_holds_the_limits_of_a_window(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}?view=window&limits=largest_equivalent_stress:1e6,largest_side_force:20000")
+    force = page.get_by_label("largest side force of all nodes [kN]", exact=True)
+    expect(force).to_have_value("20")
+    expect(page.get_by_label("largest equivalent stress of all elements [MPa]", exact=True)).to_have_value("1")
+    expect(page.get_by_role("list", name="Points by class")).to_contain_text("over limit 4")
+    page.get_by_role("button", name="Units: SI. Switch").click()
+    force = page.get_by_label("largest side force of all nodes [klbf]", exact=True)
+    expect(force).to_have_value("4.496")

@@ -376,7 +376,8 @@ function chosenIn({ axes, table, query }, own) {
   const others = axes.filter((axis) => axis !== x);
   const y = others.includes(get("y", "")) ? get("y", "") : others[0];
   const results = own ? [own.name] : table.results().filter((name) => !axes.includes(name));
-  const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
+  const asked = get("colour", "");
+  const colour = own?.name ?? (results.includes(asked) ? asked : preferred(results));
   return {
     x,
     y,

@@ -2,6 +2,7 @@
 
 import { LARGEST_ORBIT } from "../data/sweep-table.js";
 import { attend } from "../ui/notices.js";
+import { CLASS } from "./categories.js";
 
 /**
  * Data and callbacks for a view of a sweep's points.
@@ -51,7 +52,7 @@ export function preferred(results) {
     results.find((name) => name === LARGEST_ORBIT) ??
     results.find((name) => name.startsWith("orbit_radius_rms")) ??
     results.find((name) => name === "friction_coefficient_max") ??
-    results.find((name) => !["state", "error_time", "error_node"].includes(name)) ??
+    results.find((name) => !["state", CLASS, "error_time", "error_node"].includes(name)) ??
     "state"
   );
 }

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { CLASSES } from "../../data/judgement.js";
 import { classColour } from "../../draw/colours.js";
+import { preferred } from "../../sweep/part.js";
 import { sortable, wordColour, wordsOf } from "../../sweep/categories.js";
 
 test("classes are in the order of their severity, other words in that of the alphabet", () => {
@@ -23,4 +24,9 @@ test("a class has one colour, whichever other words a column has", () => {
   for (const word of CLASSES) assert.equal(wordColour("class", word, "#000000"), classColour(word));
   assert.equal(new Set(CLASSES.map(classColour)).size, CLASSES.length);
   assert.equal(wordColour("motion_regime", "regular", "#123456"), "#123456");
+});
+
+test("a sweep without results shows states first, which its points have, and no classes", () => {
+  assert.equal(preferred(["state", "class", "error_time"]), "state");
+  assert.equal(preferred(["state", "class", "torque_top"]), "torque_top");
 });

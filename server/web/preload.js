@@ -17,6 +17,7 @@ const preload = (() => {
   const PARTS = {
     sweep: {
       map: "sweep/map.js",
+      window: "sweep/window.js",
       scatter: "sweep/scatter.js",
       parallel: "sweep/parallel.js",
       effects: "sweep/sensitivities.js",
@@ -146,6 +147,11 @@ const preload = (() => {
     if (answer?.counts.total <= WHOLE) send(`${sweep}/table?format=json`);
   }
 
+  /** Sends for the diagnosis of a point that has been sent for, once it is known to have a result. @param {string} point */
+  async function sendDiagnosis(point) {
+    if ((await received(point))?.summary) send(`${point}/diagnosis`);
+  }
+
   /**
    * Sends for what the motion at a point that has been sent for is shown from.
    * @param {string} point
@@ -181,6 +187,7 @@ const preload = (() => {
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
   // The view reports failures when it sends the request itself.
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
+  if (view === "point") sendDiagnosis(`/v1/sweeps/${id}/points/${ordinal}`).catch(() => {});
   if (view === "point" && first.query.get("view") === "motion")
     sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
   load("main.js");

@@ -1,6 +1,7 @@
 // Views with a picture for each point, side by side on one scale of colours, and rotation at the ends of the
 // string.
 
+import { get } from "../data/api.js";
 import { largestShown } from "../data/decimation.js";
 import { frames } from "../data/snapshots.js";
 import { shown, title } from "../data/units.js";
@@ -30,6 +31,7 @@ function contextOf({ query, keep, table, drawing }, point) {
     keep,
     bias: () => "",
     table: (name, asks) => table(point, name, asks),
+    diagnosis: () => get(`${point.path}/diagnosis`, {}, drawing),
     drawn: () => {},
     signal: drawing,
   };

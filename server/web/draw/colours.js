@@ -41,7 +41,12 @@ export function colourOf(value, range) {
  * @param {[number, number]} range of the scale
  */
 export function inkOn(value, range) {
-  const [red, green, blue] = MIXED[stepOf(value, range)].map((part) => {
+  return inkOver(MIXED[stepOf(value, range)]);
+}
+
+/** @param {number[]} mixed red, green and blue up to 255 */
+function inkOver(mixed) {
+  const [red, green, blue] = mixed.map((part) => {
     const share = part / 255;
     return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
   });
@@ -73,6 +78,30 @@ const STATES = {
 export function stateColour(word) {
   if (!STATES[word]) return undefined;
   return getComputedStyle(document.documentElement).getPropertyValue(STATES[word]).trim();
+}
+
+/** Colours of classes of points, in both themes; Okabe and Ito's, with two darker ones. @type {Record<string, string>} */
+const OF_CLASSES = {
+  failed: "#882255",
+  buckled: "#7b5fd0",
+  stick_slip: "#d55e00",
+  backward_whirl: "#e69f00",
+  impacts: "#f0e442",
+  over_limit: "#cc79a7",
+  growing: "#56b4e9",
+  forward_whirl: "#0072b2",
+  quiet: "#009e73",
+  not_judged: "#757575",
+};
+
+/** Colour of a class of points. @param {string} name */
+export function classColour(name) {
+  return OF_CLASSES[name] ?? OF_CLASSES.not_judged;
+}
+
+/** Black or white, whichever contrasts more with the colour of a class. @param {string} name */
+export function inkOnClass(name) {
+  return inkOver([1, 3, 5].map((start) => Number.parseInt(classColour(name).slice(start, start + 2), 16)));
 }
 
 /** The scale as a gradient of CSS, from left to right. */

@@ -256,12 +256,12 @@ const BY_CHANCE = 0.3;
 /** @typedef {{frequency_hz: number, whirl: number, kind: string, growth_rate: number, measured_depth: number}} Mode */
 
 /**
- * The mode that is nearest to a line and not of the other sense of whirl; where modes are so dense that one is near any line by chance,
- * how many there are about it instead.
+ * The mode that is nearest to a line and not of the other sense of whirl; null if none is near, or if modes are so dense that one is near any line by
+ * chance.
  * @param {number} frequency [Hz], negative of backward whirl
  * @param {Mode[]} modes
  * @param {number} resolution [Hz]
- * @returns {{mode: Mode | null, among: {count: number, from: number, to: number} | null}}
+ * @returns {Mode | null}
  */
 export function modeOf(frequency, modes, resolution) {
   const line = Math.abs(frequency);
@@ -275,7 +275,6 @@ export function modeOf(frequency, modes, resolution) {
   const [from, to] = [Math.max(0, line - half), Math.min(highest, line + half)];
   const count = alike.filter((mode) => mode.frequency_hz >= from && mode.frequency_hz <= to).length;
   const near = alike.filter((mode) => distance(mode) <= within);
-  if (!near.length) return { mode: null, among: null };
-  if ((count * 2 * within) / (to - from) > BY_CHANCE) return { mode: null, among: { count, from, to } };
-  return { mode: near.reduce((best, mode) => (distance(best) <= distance(mode) ? best : mode)), among: null };
+  if (!near.length || (count * 2 * within) / (to - from) > BY_CHANCE) return null;
+  return near.reduce((best, mode) => (distance(best) <= distance(mode) ? best : mode));
 }

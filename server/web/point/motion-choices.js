@@ -66,6 +66,7 @@ export class MotionChoices {
         { table: "orbit", query: windowed },
         { table: "spectrum", query: { ...windowed, window: weighting, range_hz: range } },
         { table: "statistics", query: windowed },
+        { table: "diagnosis", isDocument: true },
         { table: "modes", query: { to_hz: modesUpTo }, isDocument: true },
       ],
       python: [
@@ -73,6 +74,7 @@ export class MotionChoices {
         `orbit = point.orbit(${cut}).to_pandas()`,
         `spectrum = point.spectrum(${cut}, window="${weighting}", range_hz=${range}).to_pandas()`,
         `statistics = point.statistics(${cut}).to_pandas()`,
+        `causes = [line["sentence"] for line in point.diagnosis()["lines"]]`,
         `modes = point.modes(to_hz=${modesUpTo})["modes"]`,
         `plot.orbit(point, ${cut})`,
         `plot.spectrum(point, ${cut}, window="${weighting}", range_hz=${range})`,

@@ -335,8 +335,8 @@ class NodeMotion {
       this.#drawStatistics();
       this.#lines.draw(lines);
       await Promise.all([this.#drawOrbit(), this.#drawSpectrum()]);
-      // The service takes a second for modes that are new to it, for which the pictures need not wait.
-      if (isNewest()) attend(this.#lines.drawModes(), this.#context.signal);
+      // The service takes a second for a diagnosis that is new to it, for which the pictures need not wait.
+      if (isNewest()) attend(this.#lines.drawCauses(), this.#context.signal);
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
       if (isNewest()) this.#wrong.textContent = error.errors[0]?.detail ?? error.message;

@@ -1,6 +1,7 @@
-// The highest lines of a spectrum, with the modes of the equilibrium next to them.
+// The highest lines of a spectrum with their causes.
 
 import { get } from "../data/api.js";
+import { causeOf, causeWords } from "../data/judgement.js";
 import { recordedAs, spectrumWindow } from "../data/statistics.js";
 import { say } from "../data/units.js";
 import { modeOf, multiple, namedLines } from "../draw/orbit.js";
@@ -35,8 +36,7 @@ export class SpectralLines {
       h("th", { class: "number" }, "Frequency"),
       h("th", {}, "Whirl"),
       h("th", { class: "number" }, "Amplitude"),
-      h("th", {}, "Is"),
-      h("th", {}, "Mode"),
+      h("th", {}, "Cause"),
     ];
     fill(
       this.element,
@@ -59,7 +59,6 @@ export class SpectralLines {
 
   /** @param {{frequency: number, amplitude: number, whirl: string}} line */
   #row({ frequency, amplitude, whirl }) {
-    const { text, isHarmonic } = this.#kindOf(frequency);
     const bias = this.#biasOf(frequency);
     return h(
       "tr",
@@ -67,25 +66,21 @@ export class SpectralLines {
       h("td", { class: "number" }, say("frequency", frequency) + bias("line_frequency_hz")),
       h("td", {}, whirl),
       h("td", { class: "number" }, say("amplitude", amplitude) + bias("line_amplitude")),
-      h("td", {}, text),
-      h("td", isHarmonic ? {} : { "data-frequency": frequency }, isHarmonic ? "" : "…"),
+      h("td", { "data-frequency": frequency }, "…"),
     );
   }
 
   /**
-   * The base of which a line is a multiple: the rotation, or else the highest line.
+   * The base of which a line is a multiple, the rotation or else the highest line; empty if it is none.
    * @param {number} frequency [Hz]
    */
-  #kindOf(frequency) {
+  #multipleOf(frequency) {
     const { resolution } = this.#spectrum.attributes;
     const { operation } = this.#context.point.scenario;
     const turns = multiple(frequency, operation.rotation_speed_rpm / 60, resolution, "rotation");
     const highest = Math.abs(namedLines(this.#spectrum)[0].frequency);
-    const harmonic =
-      Math.abs(frequency) > 1.5 * highest
-        ? multiple(frequency, highest, resolution, say("frequency", highest))
-        : "";
-    return { text: turns || harmonic, isHarmonic: harmonic !== "" };
+    if (turns || Math.abs(frequency) <= 1.5 * highest) return turns;
+    return multiple(frequency, highest, resolution, say("frequency", highest));
   }
 
   /**
@@ -106,40 +101,56 @@ export class SpectralLines {
     return (name) => (isIt ? bias(name + suffix) : "");
   }
 
-  /** Shows modes next to the lines, once they are found. */
-  async drawModes() {
+  /** Shows the causes of the lines, once they are found. Modes are looked for only if a line has no cause in the diagnosis. */
+  async drawCauses() {
     const spectrum = this.#spectrum;
-    const found = await this.#modesUpTo(this.#choices.modesUpTo);
+    const diagnosis = await this.#context
+      .diagnosis()
+      .catch((error) => ({ lines: [], problem: error.message }));
     if (this.#spectrum !== spectrum) return;
-    for (const cell of /** @type {NodeListOf<HTMLElement>} */ (
-      this.element.querySelectorAll("[data-frequency]")
-    )) {
-      const { mode, among } = modeOf(
-        Number(cell.dataset.frequency),
-        found.modes,
-        spectrum.attributes.resolution,
-      );
-      if (among)
-        fill(
-          cell,
-          h(
-            "span",
-            { class: "soft" },
-            `among ${among.count} modes from ${say("frequency", among.from, 3)} to ${say("frequency", among.to, 3)}`,
-          ),
-        );
-      else
-        fill(
-          cell,
-          mode &&
-            `${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`,
-        );
+    const left = this.#cells.filter((cell) => {
+      const frequency = Number(cell.dataset.frequency);
+      const line = this.#causeOf(frequency, diagnosis.lines);
+      const text = line ? causeWords(line) : this.#multipleOf(frequency);
+      if (text) cell.textContent = text;
+      if (line) cell.title = `Found from ${say("time", line.window[0])} to ${say("time", line.window[1])}`;
+      return !line;
+    });
+    const found = left.length ? await this.#modesUpTo(this.#choices.modesUpTo) : null;
+    if (this.#spectrum !== spectrum) return;
+    for (const cell of left) {
+      const frequency = Number(cell.dataset.frequency);
+      if (this.#multipleOf(frequency)) continue;
+      const mode = modeOf(frequency, found.modes, spectrum.attributes.resolution);
+      const words = mode
+        ? `next to a mode: ${mode.kind}, ${say("frequency", mode.frequency_hz)}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`
+        : "no cause found";
+      fill(cell, h("span", { class: "soft" }, words));
     }
-    fill(
-      this.#about,
-      found.problem ??
-        `Next to a line stands the nearest mode about the equilibrium, within half the resolution and 1 % of the frequency. If modes are so dense that one would be as near by chance, only their number is shown. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}. Torque on bit is constant: stick-slip at the bit is not judged.`,
-    );
+    fill(this.#about, diagnosis.problem, diagnosis.problem && " ", found?.problem ?? this.#aboutModes(found));
+  }
+
+  /** @param {any} found modes; null if none were looked for */
+  #aboutModes(found) {
+    const causes = "Causes are those of the point's diagnosis, over the scenario's windows of spectra.";
+    if (!found) return causes;
+    return `${causes} Next to other lines stands the nearest mode about the equilibrium, within half the resolution and 1 % of the frequency, unless modes are so dense that one would be as near by chance. ${found.modes.length} modes were found up to ${say("frequency", found.complete_to_hz)}.`;
+  }
+
+  /** Cells of the causes. @returns {HTMLElement[]} */
+  get #cells() {
+    return [.../** @type {NodeListOf<HTMLElement>} */ (this.element.querySelectorAll("[data-frequency]"))];
+  }
+
+  /**
+   * Cause of a line by the diagnosis; null without one.
+   * @param {number} frequency [Hz]
+   * @param {import("../data/judgement.js").LineCause[]} lines of the diagnosis
+   */
+  #causeOf(frequency, lines) {
+    const { node, resolution } = this.#spectrum.attributes;
+    const line = causeOf(lines, { node, frequency, resolution, window: this.#choices.window });
+    return line?.cause ? line : null;
   }
 
   /** @param {number} highest [Hz] @returns {Promise<any>} */

@@ -8,6 +8,7 @@ import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { keep, link } from "../ui/router.js";
 import { requestLines, snippets } from "../ui/snippets.js";
+import { headline } from "./headline.js";
 import { askedOf, carried } from "./part.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */
@@ -75,10 +76,13 @@ export async function show(main, route, signal) {
     fill(heading, headingPart({ ...place, query }, point));
   };
   follow(route.query);
-  const part = make(contextOf(place, point, biases, { drawn, follow }, signal));
+  const context = contextOf(place, point, biases, { drawn, follow }, signal);
+  const judgement = headline(point, context.diagnosis(), signal);
+  const part = make(context);
   fill(
     main,
     heading,
+    judgement,
     h("nav", { class: "tabs", "aria-label": "Views of the point" }, tabs),
     h("section", { class: IN_PANEL.includes(view) ? "panel" : "", "aria-label": name }, part.element),
     taken,
@@ -105,6 +109,8 @@ export async function show(main, route, signal) {
  */
 function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, follow }, signal) {
   const query = new URLSearchParams(asked);
+  /** @type {Promise<any> | undefined} */
+  let diagnosis;
   return {
     point,
     path,
@@ -119,6 +125,7 @@ function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, foll
       drawn();
     },
     bias: (name) => biases.beside(name, Number(ordinal)),
+    diagnosis: () => (diagnosis ??= get(`${path}/diagnosis`, {}, signal)),
     table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
     drawn,
     signal,

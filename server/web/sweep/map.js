@@ -5,7 +5,7 @@ import { theme } from "../data/settings.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
-import { BLACK, inkOn, stateColour, WHITE } from "../draw/colours.js";
+import { BLACK, inkOn, inkOnClass, WHITE } from "../draw/colours.js";
 import {
   adjust,
   canvas,
@@ -24,11 +24,14 @@ import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
+import { CLASS, wordColour, wordsOf } from "./categories.js";
 import { FinerGrid } from "./finer-grid.js";
 import { MANY, preferred, undelayed } from "./part.js";
 
 /** Designs that draw their points: these have no slices. */
 const DRAWN = ["latin_hypercube", "sobol"];
+/** Doubt about a point whose statistics may be those of its start. */
+const NOT_SETTLED = "not settled";
 /** Colours of words, such as states. */
 const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#f0e442", "#777777"];
 
@@ -53,7 +56,7 @@ const WORDS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9",
  * @property {HeldAxis[]} held further parameters
  * @property {boolean} isGrid whether the points form a grid, of which a slice is shown
  * @property {number[]} rows places of the shown points in the columns
- * @property {(index: number) => boolean} doubts whether a point has not settled
+ * @property {(index: number) => string} doubts reason for which a point is uncertain; empty if it is not
  */
 
 /**
@@ -72,8 +75,14 @@ export function map(context) {
   };
 }
 
-class SweepMap {
+/**
+ * Column that a map shows and that the table lacks: its name, and its word and the reason for doubt of each point.
+ * @typedef {{name: string, wordOf: (ordinal: number) => string | null, doubtOf: (ordinal: number) => string}} Own
+ */
+
+export class SweepMap {
   #context;
+  #own;
   #place = canvas("Map of the sweep", "map", "tall");
   #caption = h("figcaption", {});
   #controls = h("div", { class: "controls" });
@@ -88,11 +97,12 @@ class SweepMap {
   /** Values that the slice drawn last holds: a finer grid belongs to the slice that is shown. */
   #sliceBefore = "";
 
-  /** @param {Context} context */
-  constructor(context) {
+  /** @param {Context} context @param {Own | null} [own] */
+  constructor(context, own = null) {
     this.#context = context;
+    this.#own = own;
     this.#region = new FinerGrid(context);
-    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context).colour));
+    this.#cursor = keyboard(this.#place, (ordinal) => context.open(ordinal, chosenIn(context, own).colour));
     this.#figure = h("figure", {}, this.#place, this.#caption, this.#cursor.element);
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
     this.#region.element.addEventListener("closed", () => {
@@ -113,18 +123,21 @@ class SweepMap {
   async redraw() {
     const isNewest = this.#begin();
     const context = this.#context;
-    const chosen = chosenIn(context);
+    const chosen = chosenIn(context, this.#own);
     if (!chosen.x) {
       fill(this.element, h("p", { class: "empty" }, "This sweep varies nothing: see its table."));
       return;
     }
-    const slice = await readSlice(context, chosen);
+    const slice = await readSlice(context, chosen, this.#own);
     if (!isNewest()) return;
     fill(this.#controls, this.#controlsPart(chosen, slice));
     this.#updateRegion(chosen, slice);
     const { states } = slice;
     const isAllFailed =
-      !context.query.has("colour") && states.length > 0 && states.every((state) => state === "failed");
+      !this.#own &&
+      !context.query.has("colour") &&
+      states.length > 0 &&
+      states.every((state) => state === "failed");
     this.#empty.hidden = !isAllFailed;
     this.#figure.hidden = isAllFailed;
     if (isAllFailed) {
@@ -158,7 +171,7 @@ class SweepMap {
     return [
       choice("Across", named(axes), x, set("x")),
       y && choice("Up", named(axes.filter((axis) => axis !== x)), y, set("y")),
-      choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
+      results.length > 1 && choice(y ? "Colour" : "Result", named(results), colour, set("colour")),
       !words &&
         choice(
           "Scale",
@@ -246,36 +259,49 @@ class SweepMap {
     const { rows, ordinals, xs, values, doubts } = slice;
     const texts = textsOf(this.#context, { x, y: undefined, colour }, slice);
     const at = scaled([x, colour]);
+    const words = isText(values) ? wordsOf(colour, values) : null;
     const order = rows
       .map((_, position) => position)
+      .filter((position) => !words || values[rows[position]] !== null)
       .sort((a, b) => Number(xs[rows[a]]) - Number(xs[rows[b]]));
-    const points = order.map((position, column) => ({
-      x: at(x, xs[rows[position]]),
-      y: at(colour, values[rows[position]]),
-      column,
-      row: 0,
-      ordinal: Number(ordinals[rows[position]]),
-      text: texts[position],
-    }));
+    const points = order.map((position, column) => {
+      const value = values[rows[position]];
+      return {
+        x: at(x, xs[rows[position]]),
+        y: typeof value === "string" ? spoken(value) : at(colour, value),
+        column,
+        row: 0,
+        ordinal: Number(ordinals[rows[position]]),
+        text: texts[position],
+      };
+    });
+    const ofWord = (/** @type {string} */ word) =>
+      wordColour(colour, word, WORDS[(words ?? []).indexOf(word) % WORDS.length]);
     const trace = {
       type: "scatter",
-      mode: "lines+markers",
+      mode: words ? "markers" : "lines+markers",
       x: points.map((point) => point.x),
       y: points.map((point) => point.y),
       text: points.map(({ text }) => text),
       customdata: order.map((position) => ordinals[rows[position]]),
       hoverinfo: "text",
       marker: {
-        size: 8,
-        color: LINES[0],
+        size: words ? 12 : 8,
+        color: words ? order.map((position) => ofWord(String(values[rows[position]]))) : LINES[0],
         symbol: order.map((position) => (doubts(rows[position]) ? "x" : "circle")),
       },
       line: { color: LINES[0] },
     };
-    this.#cursor.over(points.filter((point) => typeof point.y === "number"));
+    this.#cursor.over(points.filter(({ y }) => y !== null && y !== undefined));
     await this.#draw([trace], {
       xaxis: this.#axisLayout(x),
-      yaxis: { title: this.#context.depths.title(colour), quantity: colour, type: isLog ? "log" : "linear" },
+      yaxis: {
+        title: this.#context.depths.title(colour),
+        quantity: colour,
+        ...(words
+          ? { type: "category", categoryorder: "array", categoryarray: words.map(spoken).reverse() }
+          : { type: isLog ? "log" : "linear" }),
+      },
     });
   }
 
@@ -303,20 +329,17 @@ class SweepMap {
           ...sampleTraces(samplesOf(places, colour, slice, { colours, at }), this.#place),
         ]
       : [markTrace(chosen, slice, { texts, colours, at })];
-    const failed = rows.filter((index) => states[index] === "failed");
+    // The colour of a class shows failures itself, and lies under crosses of any colour.
+    const isClass = colour === CLASS;
+    const failed = isClass ? [] : rows.filter((index) => states[index] === "failed");
     if (failed.length) traces.push(crosses("failed", failed, { symbol: "x" }, chosen, slice, at));
-    const doubtful = rows.filter(doubts);
-    if (doubtful.length)
-      traces.push(
-        crosses(
-          "not settled",
-          doubtful,
-          { symbol: "x-thin-open", line: { width: doubtful.length > MANY ? 1 : 2 } },
-          chosen,
-          slice,
-          at,
-        ),
-      );
+    const doubtful = rows.filter((index) => doubts(index));
+    if (doubtful.length) {
+      const thin = { symbol: "x-thin-open", line: { width: doubtful.length > MANY ? 1 : 2 } };
+      const rimmed = { symbol: "x", color: inks().text, line: { width: 1, color: inks().panel } };
+      const name = this.#own ? "uncertain" : NOT_SETTLED;
+      traces.push(crosses(name, doubtful, isClass ? rimmed : thin, chosen, slice, at));
+    }
     this.#cursor.over(places);
     const axis = (/** @type {string} */ name, /** @type {Values} */ column) => ({
       ...this.#axisLayout(name),
@@ -341,19 +364,20 @@ class SweepMap {
     });
     shape.on?.("plotly_click", (/** @type {any} */ event) => {
       const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context).colour);
+      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context, this.#own).colour);
     });
   }
 }
 
-/** @param {Context} context @returns {Chosen} */
-function chosenIn({ axes, table, query }) {
+/** @param {Context} context @param {Own | null} [own] @returns {Chosen} */
+function chosenIn({ axes, table, query }, own) {
   const get = (/** @type {string} */ name, /** @type {string} */ other) => query.get(name) ?? other;
   const x = axes.includes(get("x", "")) ? get("x", "") : axes[0];
   const others = axes.filter((axis) => axis !== x);
   const y = others.includes(get("y", "")) ? get("y", "") : others[0];
-  const results = table.results().filter((name) => !axes.includes(name));
-  const colour = results.includes(get("colour", "")) ? get("colour", "") : preferred(results);
+  const results = own ? [own.name] : table.results().filter((name) => !axes.includes(name));
+  const asked = get("colour", "");
+  const colour = own?.name ?? (results.includes(asked) ? asked : preferred(results));
   return {
     x,
     y,
@@ -365,23 +389,32 @@ function chosenIn({ axes, table, query }) {
   };
 }
 
-/** Reads the columns that a map shows. @param {Context} context @param {Chosen} chosen @returns {Promise<Slice>} */
-async function readSlice({ sweep, table, query }, { x, y, colour, held: heldNames }) {
+/** @param {string} word of a column */
+function spoken(word) {
+  return word.replaceAll("_", " ");
+}
+
+/** Reads the columns that a map shows. @param {Context} context @param {Chosen} chosen @param {Own | null} own @returns {Promise<Slice>} */
+async function readSlice({ sweep, table, query }, { x, y, colour, held: heldNames }, own) {
   const present = SETTLING.filter((name) => table.names.includes(name));
-  const [ordinals, states, xs, ys, values, ...others] = await table.columns(
+  const [ordinals, states, xs, ys, found, ...others] = await table.columns(
     "ordinal",
     "state",
     x,
     y ?? x,
-    colour,
+    own ? "state" : colour,
     ...heldNames,
     ...present,
   );
   const settling = others.slice(heldNames.length);
   const settlingOf = (/** @type {string} */ name, /** @type {number} */ index) =>
     settling[present.indexOf(name)]?.[index];
-  const doubts = (/** @type {number} */ index) =>
-    isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
+  const values = own ? ordinals.map((ordinal) => own.wordOf(Number(ordinal))) : found;
+  const doubts = (/** @type {number} */ index) => {
+    if (own) return own.doubtOf(Number(ordinals[index]));
+    const isDoubtful = isUnsettled(settlingOf("motion_regime", index), settlingOf("growing_mode_hz", index));
+    return isDoubtful ? NOT_SETTLED : "";
+  };
   const held = heldNames.map((axis, index) => {
     const all = distinct(others[index]);
     const asked = Number(query.get(`at.${axis}`) ?? "");
@@ -455,7 +488,7 @@ function textsOf({ depths, biases }, { x, y, colour }, { rows, ordinals, states,
   const [ofX, ofY, ofValue] = [once(part(x)), once(y ? part(y) : () => ""), part(colour)];
   return rows.map((index) => {
     const bias = typeof values[index] === "number" ? biases.beside(colour, Number(ordinals[index])) : "";
-    return `point ${ordinals[index]}: ${states[index]}${doubts(index) ? ", not settled" : ""}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${bias}`;
+    return `point ${ordinals[index]}: ${states[index]}${doubts(index) && `, ${doubts(index)}`}<br>${ofX(xs[index])}<br>${y ? `${ofY(ys[index])}<br>` : ""}${ofValue(values[index])}${bias}`;
   });
 }
 
@@ -469,25 +502,24 @@ function textsOf({ depths, biases }, { x, y, colour }, { rows, ordinals, states,
 /** @param {Context} context @param {Chosen} chosen @param {Slice} slice @param {Scaled} at @returns {Colours} */
 function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
   if (isText(values)) {
-    const vocabulary = distinct(values);
+    // The bar begins below: the most severe class stands at its top.
+    const vocabulary = colour === CLASS ? wordsOf(colour, values).reverse() : wordsOf(colour, values);
     const count = Math.max(vocabulary.length, 1);
     const discrete = Array.from({ length: count }, (_, index) => {
-      const ofWord = stateColour(String(vocabulary[index])) ?? WORDS[index % WORDS.length];
+      const ofWord = wordColour(colour, vocabulary[index] ?? "", WORDS[index % WORDS.length]);
       return [
         [index / count, ofWord],
         [(index + 1) / count, ofWord],
       ];
     }).flat();
     return {
-      z: rows.map((index) =>
-        values[index] === null ? null : vocabulary.indexOf(/** @type {string} */ (values[index])),
-      ),
+      z: rows.map((index) => (values[index] === null ? null : vocabulary.indexOf(String(values[index])))),
       words: true,
       scale: { colorscale: discrete, zmin: -0.5, zmax: count - 0.5 },
       bar: {
         ...colourBar(depths.label(colour)),
         tickvals: vocabulary.map((_, index) => index),
-        ticktext: vocabulary.map((word) => String(word).replaceAll("_", " ")),
+        ticktext: vocabulary.map(spoken),
       },
       count,
     };
@@ -562,6 +594,12 @@ function cellTraces(
  * @returns {import("../draw/samples.js").Sample[]}
  */
 function samplesOf(places, colour, { rows, values }, { colours: { z, words, scale }, at }) {
+  const inkOf = (/** @type {any} */ value, /** @type {number | null} */ shade) => {
+    if (shade === null) return inks().soft;
+    if (colour === CLASS) return inkOnClass(String(value));
+    if (words) return theme() === "dark" ? BLACK : WHITE;
+    return inkOn(shade, [scale.zmin, scale.zmax]);
+  };
   return places.map(({ x, y, column, row, ordinal, text }, position) => {
     const [value, shade] = [values[rows[position]], z[position]];
     return {
@@ -572,13 +610,7 @@ function samplesOf(places, colour, { rows, values }, { colours: { z, words, scal
       text,
       key: ordinal,
       value: typeof value === "number" ? at(colour, value) : null,
-      ink: words
-        ? theme() === "dark"
-          ? BLACK
-          : WHITE
-        : shade === null
-          ? inks().soft
-          : inkOn(shade, [scale.zmin, scale.zmax]),
+      ink: inkOf(value, shade),
     };
   });
 }
@@ -648,7 +680,7 @@ function markTrace(
  * @param {Slice} slice
  * @param {Scaled} at
  */
-function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys }, at) {
+function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys, doubts }, at) {
   const isMany = marked.length > MANY;
   return {
     type: isMany ? "scattergl" : "scatter",
@@ -657,9 +689,9 @@ function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys }, at) {
     x: marked.map((index) => at(x, xs[index])),
     y: marked.map((index) => at(y, ys[index])),
     customdata: marked.map((index) => ordinals[index]),
-    text: marked.map((index) => `point ${ordinals[index]}: ${name}`),
+    text: marked.map((index) => `point ${ordinals[index]}: ${doubts(index) || name}`),
     hoverinfo: "text",
-    marker: { ...marker, size: isMany ? 4 : 9, color: "#d55e00" },
+    marker: { color: "#d55e00", ...marker, size: isMany ? 4 : 9 },
     showlegend: true,
   };
 }

@@ -2,6 +2,7 @@
 
 import { LARGEST_ORBIT } from "../data/sweep-table.js";
 import { attend } from "../ui/notices.js";
+import { CLASS } from "./categories.js";
 
 /**
  * Data and callbacks for a view of a sweep's points.
@@ -23,8 +24,8 @@ import { attend } from "../ui/notices.js";
 
 /**
  * A view of a sweep's points: its element, how it is drawn anew when there are further results, the columns that it shows, and those
- * of other sweeps.
- * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[]}} Part
+ * of other sweeps; or else the lines that get what it shows.
+ * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[], lines?: () => import("../ui/snippets.js").Lines}} Part
  */
 
 /** Points beyond which marks are drawn by WebGL. */
@@ -51,7 +52,7 @@ export function preferred(results) {
     results.find((name) => name === LARGEST_ORBIT) ??
     results.find((name) => name.startsWith("orbit_radius_rms")) ??
     results.find((name) => name === "friction_coefficient_max") ??
-    results.find((name) => !["state", "error_time", "error_node"].includes(name)) ??
+    results.find((name) => !["state", CLASS, "error_time", "error_node"].includes(name)) ??
     "state"
   );
 }

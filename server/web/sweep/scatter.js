@@ -2,11 +2,11 @@
 
 import { isText } from "../data/sweep-table.js";
 import { label, say, shown } from "../data/units.js";
-import { stateColour } from "../draw/colours.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
+import { CLASS, wordColour, wordsOf } from "./categories.js";
 import { MANY, preferred, undelayed } from "./part.js";
 
 /** @typedef {import("./part.js").Context} Context */
@@ -62,6 +62,7 @@ export function scatter(context) {
       title: context.depths.title(name),
       quantity: name,
       type: isText(values) ? "category" : isLog ? "log" : "linear",
+      ...(name === CLASS ? { categoryorder: "array", categoryarray: wordsOf(name, values) } : {}),
     });
     const layout = { xaxis: axis(x, xs, chosen.isLogX), yaxis: axis(y, ys, chosen.isLogY) };
     const shape = await draw(
@@ -146,19 +147,18 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
       },
     ];
   }
-  const words = [...new Set(colours)].filter((word) => word !== null);
-  return words.map((word, order) => {
+  return wordsOf(colour, colours).map((word, order) => {
     const rows = ordinals.map((_, index) => index).filter((index) => colours[index] === word);
     return {
       ...base,
-      name: String(word),
+      name: word.replaceAll("_", " "),
       x: rows.map((index) => atX[index]),
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
       customdata: rows.map((index) => ordinals[index]),
       marker: {
         size,
-        color: stateColour(String(word)) ?? LINES[order % LINES.length],
+        color: wordColour(colour, word, LINES[order % LINES.length]),
         symbol: order,
       },
       showlegend: true,

@@ -3,11 +3,13 @@
 import { csvOf } from "../data/csv.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { meaning, nodeOfColumn, number, unit } from "../data/units.js";
+import { classWord } from "../draw/class-word.js";
 import { choice, debounced, download, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { MOST } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
+import { CLASS, sortable } from "./categories.js";
 import { preferred } from "./part.js";
 
 const ROW_PX = 30;
@@ -129,7 +131,7 @@ class PointTable {
     const kept = all.filter((index) =>
       tests.every((test, order) => test.holds(found[asked.length + 1 + order][index])),
     );
-    this.#rows = kept.sort(ordering(found[asked.length], isDown));
+    this.#rows = kept.sort(ordering(sortable(by, found[asked.length]), isDown));
     fill(
       this.#status,
       `${this.#rows.length === data.rows ? "" : `${this.#rows.length} of `}${data.rows} points`,
@@ -151,7 +153,14 @@ class PointTable {
     if (asked.length) return asked;
     const results = data.results().filter((name) => !axes.includes(name) && name !== "state");
     const usual = [preferred(results), ...results.filter((name) => USUAL.test(name))];
-    return ["ordinal", "state", ...axes, ...new Set(usual.filter((name) => results.includes(name)))];
+    const judged = results.filter((name) => name === CLASS);
+    return [
+      "ordinal",
+      "state",
+      ...judged,
+      ...axes,
+      ...new Set(usual.filter((name) => results.includes(name))),
+    ];
   }
 
   /** @param {string} name of a column @param {boolean} isSorted whether rows are sorted by it @param {boolean} isDown */
@@ -294,6 +303,7 @@ class PointTable {
         h("span", { class: `state ${value}` }, value),
         this.#doubts(index) && h("span", { class: "wrong small" }, " not settled"),
       );
+    if (name === CLASS) return h("td", {}, value !== null && classWord(String(value)));
     if (typeof value !== "number")
       return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
     const bias = biases.at(name, ordinal);

@@ -23,6 +23,7 @@ import { sweepLines } from "./snippets.js";
  */
 const PARTS = [
   ["map", "Map", async () => (await import("./map.js")).map],
+  ["window", "Window", async () => (await import("./window.js")).operatingWindow],
   ["scatter", "Scatter", async () => (await import("./scatter.js")).scatter],
   ["parallel", "Parallel coordinates", async () => (await import("./parallel.js")).parallel],
   ["effects", "Sensitivities", async () => (await import("./sensitivities.js")).effects],
@@ -57,8 +58,10 @@ export async function show(main, route, signal) {
   const make = await making();
 
   const query = new URLSearchParams(route.query);
-  const taken = snippets(() =>
-    sweepLines([{ id, path: data.path, fields: data.served(part.fields()) }, ...(part.others?.() ?? [])]),
+  const taken = snippets(
+    () =>
+      part.lines?.() ??
+      sweepLines([{ id, path: data.path, fields: data.served(part.fields()) }, ...(part.others?.() ?? [])]),
   );
   const drawn = () => taken.dispatchEvent(new Event("redraw"));
   /** @type {Context} */

@@ -32,28 +32,27 @@ test("multiples of a frequency are those within half the resolution, up to twelv
   assert.equal(multiple(1, 0, 0.05, "rotation"), "");
 });
 
-/** Frequency of the mode of a line, and how many modes are about it if that says nothing. */
-function beside(line, frequencies, resolution, whirl = 1) {
+/** Frequency of the mode of a line. */
+function modeNear(line, frequencies, resolution, whirl = 1) {
   const modes = frequencies.map((frequency_hz) => ({ frequency_hz, whirl, kind: "lateral" }));
-  const { mode, among } = modeOf(line, modes, resolution);
-  return [mode?.frequency_hz ?? null, among?.count ?? null];
+  return modeOf(line, modes, resolution)?.frequency_hz ?? null;
 }
 
 const ALONE = [0.9, 2, 3.1, 4.4];
 
 test("a line has the mode that is within half the resolution and a hundredth of its frequency", () => {
-  assert.deepEqual(beside(2.03, ALONE, 0.1), [2, null]);
-  assert.deepEqual(beside(2.0699, ALONE, 0.1), [2, null]);
-  assert.deepEqual(beside(2.1, ALONE, 0.1), [null, null]);
+  assert.equal(modeNear(2.03, ALONE, 0.1), 2);
+  assert.equal(modeNear(2.0699, ALONE, 0.1), 2);
+  assert.equal(modeNear(2.1, ALONE, 0.1), null);
 });
 
 test("a mode of the other sense of whirl is not that of a line, but motion to and fro is of both", () => {
-  assert.deepEqual(beside(-2.03, ALONE, 0.1), [null, null]);
-  assert.deepEqual(beside(-2.03, ALONE, 0.1, -1), [2, null]);
-  assert.deepEqual(beside(-2.03, ALONE, 0.1, 0), [2, null]);
+  assert.equal(modeNear(-2.03, ALONE, 0.1), null);
+  assert.equal(modeNear(-2.03, ALONE, 0.1, -1), 2);
+  assert.equal(modeNear(-2.03, ALONE, 0.1, 0), 2);
 });
 
-test("where modes are dense they are counted instead", () => {
+test("no mode is that of a line if modes are so dense that one is near any line", () => {
   const dense = Array.from({ length: 199 }, (_, index) => 0.05 * (index + 1));
-  assert.deepEqual(beside(2.03, dense, 0.1), [null, 20]);
+  assert.equal(modeNear(2.03, dense, 0.1), null);
 });

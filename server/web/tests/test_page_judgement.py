@@ -98,7 +98,7 @@ def test_limits_that_are_moved_judge_the_points_anew(opened: Opens, sweep: Sweep
     table = page.get_by_role("link", name="Table (JSON)").get_attribute("href") or ""
     assert "limits=largest_equivalent_stress%3A1000000" in table
     lines = shown_lines(page)
-    assert "class_uncertain" in run_curl(lines["curl"], tmp_path)[""]
+    assert "class_uncertain" in run_curl(lines["curl"], tmp_path / "curl")[""]
     assert "class_uncertain" in run_python(lines["Python"])["table"]
     page.get_by_role("checkbox", name=f"Limit of {name}").uncheck()
     shows({"largest_equivalent_stress": None})

@@ -53,6 +53,11 @@ impl LoadWindow {
         Self { block: block.max(1), fixed }
     }
 
+    /// True if a step that begins at a tick may be observed.
+    pub(super) fn holds(&self, tick: u64) -> bool {
+        self.fixed.as_ref().is_none_or(|window| window.contains(&tick))
+    }
+
     /// Number of the block that a step belongs to; absent outside a fixed window.
     pub(super) fn block_of(&self, [start, end]: [u64; 2]) -> Option<u64> {
         match &self.fixed {

@@ -86,7 +86,9 @@ impl<const D: usize> Loads<D> {
         blocks: &mut LoadBlocks,
     ) {
         let Some(number) = self.window.block_of(ticks) else {
-            self.start(moment);
+            if self.window.holds(ticks[1]) {
+                self.start(moment);
+            }
             return;
         };
         let new_block = || LoadBlock::new(moment.time - h, self.nodes.groups(), self.elements.groups());

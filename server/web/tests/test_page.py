@@ -301,7 +301,7 @@ def test_a_point_says_which_effects_took_part_and_why(opened: Opens, named: Swee
 def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49")
     history = drawn(page, "History of node")
-    shown = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    shown = page.locator("dt", has_text="Orbit size (rms").locator("xpath=following-sibling::dd[1]")
     expect(shown).to_be_visible()
     box = history.locator(".nsewdrag").first.bounding_box()
     assert box is not None

@@ -194,7 +194,7 @@ def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Ope
     verified = client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, verify=1).wait(timeout=180.0)
     bias = float(verified.verification()["bias_orbit_radius_rms_10"][0])
     page = opened(f"#/sweeps/{verified.id}/points/1?view=motion")
-    size = page.locator("dt", has_text="Orbit size").locator("xpath=following-sibling::dd[1]")
+    size = page.locator("dt", has_text="Orbit size (rms").locator("xpath=following-sibling::dd[1]")
     expect(size).to_contain_text(f"(bias {said(bias)})")
     # It is the last third of the run, as that of the summary.
     summary = verified.point(1).summary
@@ -427,7 +427,7 @@ def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -
     assert "range_hz=100" in lines["Python"]
 
 
-@pytest.mark.parametrize("choices", ["", "&node=1&from=0.2&to=0.4&range=50&window=rectangular"])
+@pytest.mark.parametrize("choices", ["", "&node=49&from=0.2&to=0.4&range=50&window=rectangular"])
 def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens, sweep: Sweep, choices: str) -> None:
     page = opened("#/nowhere")
     asked: list[str] = []

@@ -14,7 +14,8 @@ STEPS = 10
 
 STEP = {"esdirk4": 1_067_500, "generalized_alpha": 266_800, "rk4": 545_100}
 """Instructions of the simulation's own in one step of the paper's case (297 nodes, 150 in the wall) by method, with
-Rust 1.95 and without incremental compilation; a third of the steps lie in the window whose loads are observed. A change that lowers a count lowers it here too."""
+Rust 1.95 and without incremental compilation; a third of the steps lie in the window whose loads are observed. A
+change that lowers a count lowers it here too."""
 
 MARGIN = 0.05
 """Share that another processor or C library may add, or incremental compilation save: it cuts the code into other

@@ -934,7 +934,7 @@ def test_a_hundred_thousand_points_are_shown_with_their_results(
     page.locator(".rows").evaluate("rows => { rows.scrollTop = rows.scrollHeight }")
     last = page.get_by_role("row").filter(has=page.get_by_role("link", name="100000", exact=True))
     # After the tick, in millimetres: as many as the point's number.
-    expect(last.get_by_role("cell").nth(3)).to_have_text("100000")
+    expect(last.get_by_role("cell").nth(3)).to_have_text(re.compile(r"^100\D?000$"))
     assert page.locator(".rows tbody tr").count() < 200
     page.get_by_role("searchbox").fill("orbit_radius_rms_49>99990")
     expect(page.get_by_text("10 of 100000 points")).to_be_visible()

@@ -3,15 +3,12 @@
 use std::collections::BTreeMap;
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Name, Quantity};
+use drillsweep_quantity::{Name, Quantity, units};
 use drillsweep_scenario::nearest;
 use serde::{Deserialize, Serialize};
 
 /// Largest number of limits in a request.
 const MOST_LIMITS: usize = 64;
-
-/// Standard gravity \[m/s2\].
-const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Limits by column, in the column's unit; values that are larger in magnitude exceed them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
@@ -49,9 +46,6 @@ static OF_CLASSES: [&Quantity; 5] = [
     &LARGEST_SHOCK_RATE_10G,
 ];
 
-/// One pound-force per square inch \[Pa\].
-const PSI: f64 = 6_894.757;
-
 /// The default limits, in the columns' units.
 static DEFAULTS: [(&Quantity, f64); 8] = [
     // Sinusoidal buckling: Dawson and Paslay 1984, in curved holes He and Kyllingstad 1995.
@@ -64,11 +58,11 @@ static DEFAULTS: [(&Quantity, f64); 8] = [
     // Chosen: one shock a minute.
     (&LARGEST_SHOCK_RATE_10G, 1.0 / 60.0),
     // Field practice calls lateral vibration severe from 2 to 3 g rms on.
-    (&LARGEST_LATERAL_ACCELERATION_RMS, 2.0 * STANDARD_GRAVITY),
+    (&LARGEST_LATERAL_ACCELERATION_RMS, 2.0 * units::ACCELERATION.shown.size),
     // Fatigue of grade S-135 without tension: 20 ksi (API RP 7G, after Lubinski).
-    (&LARGEST_BENDING_STRESS, 20_000.0 * PSI),
+    (&LARGEST_BENDING_STRESS, 20.0 * units::STRESS.field.size),
     // Least yield strength of grade E: 75 ksi (API Spec 5DP).
-    (&LARGEST_EQUIVALENT_STRESS, 75_000.0 * PSI),
+    (&LARGEST_EQUIVALENT_STRESS, 75.0 * units::STRESS.field.size),
 ];
 
 impl Default for OperatingLimits {

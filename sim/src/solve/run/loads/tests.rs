@@ -222,13 +222,16 @@ fn tension_and_torque_add_up_to_the_equivalent_stress() {
 }
 
 #[test]
-fn pressures_load_a_wall_as_lame_has_it() {
-    // Equivalent stress of a closed tube under a bore pressure at rest, for an effective tension of zero: sqrt(3) p r_o^2 / (r_o^2 - r_i^2) inside.
+fn shear_by_pressure_is_half_the_difference_of_hoop_and_radial_stress() {
     let model = Model::new(&string(0.0, 0.0)).unwrap();
     let section = model.elements[0].beam.section();
-    let [outer, inner] = [section.outer_diameter, section.inner_diameter].map(|d| 0.25 * d * d);
-    assert_near(section.pressure_shear(0.5 * section.inner_diameter), outer / (outer - inner), 1e-12);
-    assert_near(section.pressure_shear(0.5 * section.outer_diameter), inner / (outer - inner), 1e-12);
+    let [outer, inner] = [section.outer_diameter, section.inner_diameter].map(|diameter| 0.5 * diameter);
+    // Lame's stresses of a thick tube under 1 Pa in its bore.
+    let factor = inner * inner / (outer * outer - inner * inner);
+    for radius in [inner, 0.5 * (inner + outer), outer] {
+        let [hoop, radial] = [1.0, -1.0].map(|sign| factor * (1.0 + sign * (outer / radius).powi(2)));
+        assert_near(section.pressure_shear(radius), 0.5 * (hoop - radial), 1e-12);
+    }
 }
 
 /// Run of the base case from rest over `duration` \[s\], with its histories.

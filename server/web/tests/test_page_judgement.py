@@ -20,6 +20,7 @@ def test_a_point_begins_with_its_class_and_the_numbers_behind_it(opened: Opens, 
     expect(judged.locator(".verdict > p")).to_have_text(f"{first['class'].replace('_', ' ')} {first['sentence']}")
     assert judged.locator("li").count() == len(others)
     summary = sweep.point(1).summary
+    assert summary is not None
     side_force = judged.locator("div", has=page.get_by_text("Largest side force", exact=True)).last.locator("dd")
     force, depth = (float(number) for number in re.findall(r"[\d.]+", side_force.inner_text())[:2])
     assert abs(force - summary["largest_side_force"] / 1e3) <= 0.01 * force

@@ -260,6 +260,10 @@ quantities! {
     BENDING_MOMENT_PEAK_TIME: "bending_moment_peak_time", "", TIME, "time of the bending moment peak";
     /// Largest bending stress at the outer diameter.
     BENDING_STRESS_PEAK: "bending_stress_peak", "", STRESS, "bending stress peak";
+    /// Largest axial stress by the effective tension, in magnitude.
+    AXIAL_STRESS_PEAK: "axial_stress_peak", "", STRESS, "axial stress peak";
+    /// Largest shear stress by the torque, at the outer diameter.
+    TORSIONAL_STRESS_PEAK: "torsional_stress_peak", "", STRESS, "torsional stress peak";
     /// Mean effective tension of the element above the node, of the first node of the one below it.
     TENSION_MEAN: "tension_mean", "", FORCE, "mean tension";
     /// Smallest effective tension.
@@ -276,6 +280,11 @@ quantities! {
     EQUIVALENT_STRESS_PEAK: "equivalent_stress_peak", "", STRESS, "equivalent stress peak";
     /// Time of the largest equivalent stress.
     EQUIVALENT_STRESS_PEAK_TIME: "equivalent_stress_peak_time", "", TIME, "time of the equivalent stress peak";
+
+    /// Largest equivalent stress over the least yield strength; absent without a grade.
+    YIELD_RATIO: "yield_ratio", "", RATIO, "stress over yield strength";
+    /// Part of the life that fatigue takes by time: rainflow cycles of the axial stress, Goodman's mean stress, class B of ISO 19902 in seawater with protection; absent without a grade.
+    FATIGUE_RATE: "fatigue_rate", "", WEAR_RATE, "fatigue rate";
 
     // The worst of all nodes and elements.
     /// Largest orbit size of all nodes.
@@ -320,10 +329,26 @@ quantities! {
     LARGEST_BENDING_STRESS: "largest_bending_stress", "", STRESS, "largest bending stress of all elements";
     /// Measured depth of the element's lower end with the largest bending stress.
     LARGEST_BENDING_STRESS_DEPTH: "largest_bending_stress_depth", "", DEPTH, "depth of the largest bending stress";
+    /// Largest axial stress by the effective tension of all elements, in magnitude.
+    LARGEST_AXIAL_STRESS: "largest_axial_stress", "", STRESS, "largest axial stress of all elements";
+    /// Measured depth of the element's lower end with the largest axial stress.
+    LARGEST_AXIAL_STRESS_DEPTH: "largest_axial_stress_depth", "", DEPTH, "depth of the largest axial stress";
+    /// Largest shear stress by the torque of all elements, at the outer diameter.
+    LARGEST_TORSIONAL_STRESS: "largest_torsional_stress", "", STRESS, "largest torsional stress of all elements";
+    /// Measured depth of the element's lower end with the largest shear stress by the torque.
+    LARGEST_TORSIONAL_STRESS_DEPTH: "largest_torsional_stress_depth", "", DEPTH, "depth of the largest torsional stress";
     /// Largest equivalent stress by von Mises of all elements.
     LARGEST_EQUIVALENT_STRESS: "largest_equivalent_stress", "", STRESS, "largest equivalent stress of all elements";
     /// Measured depth of the element's lower end with the largest equivalent stress.
     LARGEST_EQUIVALENT_STRESS_DEPTH: "largest_equivalent_stress_depth", "", DEPTH, "depth of the largest equivalent stress";
+    /// Largest equivalent stress over the least yield strength of all elements with a grade; absent without any.
+    LARGEST_YIELD_RATIO: "largest_yield_ratio", "", RATIO, "largest stress over yield strength";
+    /// Measured depth of the element's lower end with the largest stress over yield strength.
+    LARGEST_YIELD_RATIO_DEPTH: "largest_yield_ratio_depth", "", DEPTH, "depth of the largest stress over yield strength";
+    /// Largest part of the life that fatigue takes by time, of all elements with a grade; absent without any.
+    LARGEST_FATIGUE_RATE: "largest_fatigue_rate", "", WEAR_RATE, "largest fatigue rate";
+    /// Measured depth of the element's lower end with the largest fatigue rate.
+    LARGEST_FATIGUE_RATE_DEPTH: "largest_fatigue_rate_depth", "", DEPTH, "depth of the largest fatigue rate";
     /// Mean rotation speed of the bit.
     BIT_SPEED_MEAN: "bit_speed_mean", "", ANGULAR_SPEED, "mean bit speed";
     /// Lowest rotation speed of the bit; negative is backward.
@@ -342,6 +367,8 @@ quantities! {
     TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest torque top";
     /// Largest torque of the uppermost element.
     TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest torque top";
+    /// Dynamic torque: largest less smallest torque of the uppermost element.
+    TORQUE_TOP_RANGE: "torque_top_range", "", TORQUE, "dynamic torque top";
     /// Share of the string's length that whirls backward: moves backward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
     BACKWARD_WHIRL_FRACTION: "backward_whirl_fraction", "", RATIO, "share in backward whirl";
     /// Share of the string's length that whirls forward: moves forward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.

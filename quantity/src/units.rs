@@ -112,6 +112,8 @@ pub static ACCELERATION: Units =
     shown_in("acceleration", "m/s2", ("g", STANDARD_GRAVITY), ("g", STANDARD_GRAVITY));
 /// Numbers of events by time, read per minute.
 pub static EVENT_RATE: Units = shown_in("rate", "1/s", ("1/min", 1.0 / 60.0), ("1/min", 1.0 / 60.0));
+/// Parts of a life by time, read per hour.
+pub static WEAR_RATE: Units = shown_in("rate", "1/s", ("1/h", 1.0 / 3600.0), ("1/h", 1.0 / 3600.0));
 /// Stresses in solids.
 pub static STRESS: Units = shown_in("stress", "Pa", ("MPa", 1e6), ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)));
 /// Pressures.

@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-pub use limits::{LimitError, OperatingLimits};
+pub use limits::{LimitChanges, LimitError, OperatingLimits};
 pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes};
 
 /// Class of a point, the most severe first.

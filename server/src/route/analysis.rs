@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::analysis::{self, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
-use drillsweep_api::judgement::{Judgement, Line, OperatingLimits};
+use drillsweep_api::judgement::{Judgement, LimitChanges, Line};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use drillsweep_table::tables;
 use serde::{Deserialize, Deserializer};
@@ -112,12 +112,12 @@ pub(crate) async fn modes(
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DiagnosisQuery {
-    /// Changes of the default limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
+    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
     /// makes the point `over_limit`; `bit_stick_slip_severity`, `backward_whirl_fraction`, `forward_whirl_fraction` and `largest_shock_rate_10g`
     /// decide classes of their own.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
-    limits: OperatingLimits,
+    limits: LimitChanges,
 }
 
 /// Diagnosis of a point: class of its motion, and causes of its spectral lines
@@ -140,6 +140,7 @@ pub(crate) async fn diagnosis(
     Query(DiagnosisQuery { limits }): Query<DiagnosisQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
+    let limits = app.config.operating_limits.with(&limits);
     let point = point(&app, &id, n).await?;
     let tag = Tag::of(Format::Json, &("diagnosis", &point.key, &point.summary, &limits));
     if let Some(unchanged) = tag.unchanged(&headers) {

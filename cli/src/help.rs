@@ -25,6 +25,7 @@ const GROUPS: [Group; 4] = [
         &[
             ("submit", "drillsweep submit paper-200m-damped --flow-rate 0.01:0.04:4 --name flow"),
             ("append", "drillsweep append flow --flow-rate 0.05,0.06"),
+            ("refine", "drillsweep refine flow --by class --budget 50"),
             ("watch", "drillsweep watch flow"),
             ("list", "drillsweep list --owner anne --state running"),
             ("show", "drillsweep show flow 2"),

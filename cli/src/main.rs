@@ -77,6 +77,8 @@ enum Command {
     Delete(sweeps::DeleteArguments),
     /// Add points to a sweep, over its own parameters; those that it has are skipped.
     Append(submit::AppendArguments),
+    /// Add points to a sweep between those whose classes, or values of a column, differ.
+    Refine(submit::RefineArguments),
     /// List the failed points of all sweeps, the latest first.
     Failures(sweeps::FailuresArguments),
     /// Show the queue and the workers.
@@ -203,6 +205,7 @@ fn run() -> anyhow::Result<()> {
         Command::Change(arguments) => sweeps::change(&arguments),
         Command::Delete(arguments) => sweeps::delete(&arguments),
         Command::Append(arguments) => submit::append(&arguments),
+        Command::Refine(arguments) => submit::refine(&arguments),
         Command::Failures(arguments) => sweeps::failures(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),

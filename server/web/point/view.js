@@ -77,7 +77,7 @@ export async function show(main, route, signal) {
   };
   follow(route.query);
   const context = contextOf(place, point, biases, { drawn, follow }, signal);
-  const judgement = headline(point, context.diagnosis(), signal);
+  const judgement = headline(point, biases.orbitSize(Number(ordinal)), context.diagnosis(), signal);
   const part = make(context);
   fill(
     main,

@@ -373,6 +373,13 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     page = opened(f"#/sweeps/{verified.id}/points/{ordinal}?view=about")
     trust = page.get_by_role("region", name="How far to trust it")
     expect(trust.get_by_text(re.compile(r"Verified against reference runs: .*node 49 \(bias "))).to_be_visible()
+    error = page.get_by_role("group", name="Error of orbit size")
+    sizes = [column for column in table.columns if column.startswith("bias_orbit_radius_rms_")]
+    worst = 100 * max(abs(float(table[column][0])) for column in sizes)
+    expect(error.locator("div", has_text="measured by verification")).to_contain_text(f"{float(f'{worst:.2g}'):g} %")
+    promised = verified.point(ordinal).summary["promised_error"]
+    expect(error.locator("div", has_text="promised")).to_contain_text(f"{100 * promised:g} %")
+    expect(error).to_contain_text(f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise")
 
 
 def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:

@@ -147,6 +147,40 @@ export function namedLines(table) {
 }
 
 /**
+ * Marks at the named lines of a spectrum, at their frequencies and amplitudes interpolated between its samples.
+ * @param {any} table
+ * @param {any} marker
+ */
+export function peaksTrace(table, marker) {
+  const lines = namedLines(table);
+  return {
+    type: "scatter",
+    mode: "markers",
+    x: lines.map(({ frequency }) => frequency),
+    y: shown(
+      "amplitude",
+      lines.map(({ amplitude }) => amplitude),
+    ),
+    marker: { size: 6, ...marker },
+    showlegend: false,
+    hovertemplate: "line at %{x:.3~f} Hz: %{y:.4~g}<extra></extra>",
+  };
+}
+
+/**
+ * Visibility of the wall in the picture of an orbit.
+ * @param {{xaxis: {range: number[]}, yaxis: {range: number[]}}} layout of the orbit, in the units in which it is shown
+ * @param {number} clearance [m]
+ */
+export function isWallSeen({ xaxis, yaxis }, clearance) {
+  const radius = Number(shown("radius", [clearance])[0]);
+  const nearest = (/** @type {number[]} */ [from, to]) => (from > 0 ? from : to < 0 ? -to : 0);
+  const farthest = (/** @type {number[]} */ [from, to]) => Math.max(Math.abs(from), Math.abs(to));
+  const [x, y] = [xaxis.range, yaxis.range];
+  return Math.hypot(nearest(x), nearest(y)) <= radius && radius <= Math.hypot(farthest(x), farthest(y));
+}
+
+/**
  * Layout of full spectra: what the steps of one of them do not resolve is shaded, and the highest lines are named, with that of their
  * spectrum where it has one.
  * @param {{table: any, name?: string}[]} spectra

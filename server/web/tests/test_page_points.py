@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -413,6 +414,18 @@ def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Op
         expect(lines.filter(has_text="(bias ")).to_have_count(0)
 
 
+def test_the_wall_is_named_where_it_is_seen_and_the_axes_by_the_low_side(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
+    drawn(page, "Orbit of node 49")
+    panel = page.locator(".panel", has=page.get_by_role("heading", name="Orbit, looking downhole"))
+    expect(panel).to_contain_text("The wall is outside the picture, at least")
+    page.get_by_label("Orbit shows").select_option("hole")
+    expect(panel).to_contain_text("On the grey circle the node touches the wall.")
+    angle = math.degrees(float(sweep.point(1).statics().to_pandas().set_index("node").low_side_angle[49]))
+    expected = f"u points {float(f'{abs(angle):.3g}'):g}° " if abs(angle) >= 0.5 else "u points to the low side"
+    expect(page.get_by_text(expected)).to_be_visible()
+
+
 def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     last = "place => Math.max(...place.data[0].x)"
@@ -470,6 +483,8 @@ def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sw
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion"))
     rows = page.get_by_role("region", name="Lines, scrollable").get_by_role("row")
     expect(rows).to_have_count(4)
+    marks = trace(drawn(page, "Full spectrum of node"), 1)
+    assert [marks["x"], marks["y"]] == [[2.16, 4.32, 5.0], pytest.approx([2.0, 1.0, 0.5])]
     causes = [rows.nth(number).get_by_role("cell").nth(3) for number in (1, 2, 3)]
     expect(causes[1]).to_have_text("2 \N{MULTIPLICATION SIGN} 2.16 Hz")
     # Once the modes are found.

@@ -82,10 +82,10 @@ test("columns of a node name it as links do", () => {
   assert.equal(units.nodeOfColumn(""), "");
 });
 
-test("units of variants are those of the quantity, but biases are shares", () => {
+test("units of variants are those of the quantity, but biases are per cent", () => {
   assert.deepEqual(units.unit("orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("confidence_orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
-  assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "", size: 1 });
+  assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "%", size: 0.01 });
   assert.equal(units.title("orbit_radius_rms_49"), "lateral vibration, node 49 [mm]");
   assert.equal(units.servedUnit("orbit_radius_rms_49"), "m");
   assert.equal(units.servedUnit("friction_coefficient"), "");

@@ -254,6 +254,31 @@ export function servedUnit(name) {
   return entry?.unit && entry.unit !== "1" ? written(entry.unit) : "";
 }
 
+/**
+ * The unit in which numbers of a name are entered: that of the oil field if the reader chose field units, else the served one.
+ * @param {string} name
+ * @returns {{symbol: string, size: number}}
+ */
+export function inputUnit(name) {
+  const { entry } = parse(name);
+  return unitSystem() === "field" && entry?.field
+    ? readable(entry.field)
+    : { symbol: servedUnit(name), size: 1 };
+}
+
+/** All units of a name by their symbols, the served one first; none of a number without a unit. @param {string} name */
+export function unitsOf(name) {
+  const { entry } = parse(name);
+  if (!servedUnit(name)) return [];
+  const further = [entry?.shown, entry?.field].flatMap((one) => (one ? [readable(one)] : []));
+  return [{ symbol: servedUnit(name), size: 1 }, ...further];
+}
+
+/** @param {{unit: string, size: number}} unit */
+function readable({ unit: symbol, size }) {
+  return { symbol: written(symbol), size };
+}
+
 /** @param {string} symbol a unit in the registry's spelling, such as `N s/m2` */
 function written(symbol) {
   return symbol

@@ -58,7 +58,8 @@ def test_what_is_typed_stays_when_colours_and_units_are_switched(opened: Opens) 
     expect(values).to_have_value("0.015, not a number")
     page.get_by_role("button", name="Units: SI").click()
     expect(page.get_by_role("button", name="Units: field")).to_be_visible()
-    expect(values).to_have_value("0.015, not a number")
+    # The number stays in other units: 0.015 m3/s.
+    expect(values).to_have_value("237.755, not a number")
 
 
 def test_a_sweep_like_another_one_is_its_request(opened: Opens, client: Client) -> None:
@@ -379,7 +380,9 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     expect(error.locator("div", has_text="measured by verification")).to_contain_text(f"{float(f'{worst:.2g}'):g} %")
     promised = verified.point(ordinal).summary["promised_error"]
     expect(error.locator("div", has_text="promised")).to_contain_text(f"{100 * promised:g} %")
-    expect(error).to_contain_text(f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise")
+    expect(error).to_contain_text(
+        f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise"
+    )
 
 
 def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:

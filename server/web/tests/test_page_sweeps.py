@@ -77,6 +77,62 @@ def test_what_is_typed_just_before_a_view_is_left_stays_out_of_the_next_link(
     assert "request" not in page.url
 
 
+def test_field_units_hold_in_the_form_and_the_request_is_in_si_units(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    page.get_by_role("button", name="Units: SI. Switch").click()
+    rows = page.get_by_role("region", name="Parameters")
+    flows, densities = (rows.get_by_role("textbox", name="Values").nth(row) for row in (0, 1))
+    expect(densities).to_have_value("10.0145:17.5253:4")
+    # Values that nobody has touched stay as they were.
+    assert requested(page)["axes"]["mud_density"] == {"from": 1200, "to": 2100, "count": 4}
+    gallon_a_minute = 231 * 0.0254**3 / 60
+    flows.fill("300, 600 gpm, 0.02 m³/s")
+    expected = {"values": pytest.approx([300 * gallon_a_minute, 600 * gallon_a_minute, 0.02], rel=1e-14)}
+    until(page, lambda: requested(page)["axes"]["flow_rate"] == expected)
+    scenario = page.get_by_role("region", name="Scenario", exact=True)
+    scenario.get_by_text("All fields, with units").click()
+    scenario.locator("summary", has_text=re.compile("^operation$")).click()
+    weight = scenario.get_by_label("weight on bit [klbf]")
+    weight.fill("20")
+    until(page, lambda: "operation.weight_on_bit" in requested(page).get("set", {}))
+    assert requested(page)["set"]["operation.weight_on_bit"] == pytest.approx(20e3 * 0.45359237 * 9.80665, rel=1e-14)
+    page.get_by_role("button", name="Units: field. Switch").click()
+    expect(scenario.get_by_label("weight on bit [N]")).to_have_value("88964.4323052")
+    expect(page.get_by_role("button", name="Submit 12 points")).to_be_enabled()
+
+
+def test_recorded_nodes_and_windows_are_lists(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    page.get_by_text("Recorded nodes, windows of spectra").click()
+    expect(page.get_by_label("Node 2", exact=True)).to_have_value("49")
+    page.get_by_role("button", name="Remove node 1").click()
+    page.get_by_role("button", name="Add a node").click()
+    box = page.get_by_label("Node 3", exact=True)
+    box.fill("120.5")
+    box.blur()
+    until(
+        page, lambda: requested(page).get("set") == {"recording.nodes": [{"node": 49}, {"node": 282}, {"depth": 120.5}]}
+    )
+    for _ in range(2):
+        page.get_by_role("button", name="Remove window 1").click()
+    until(page, lambda: requested(page)["set"].get("recording.spectrum_windows") == [])
+    # Both are shown as lists alone.
+    expect(page.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
+    expect(page.get_by_role("button", name="Submit 12 points")).to_be_enabled()
+    for _ in range(2):
+        page.get_by_role("button", name="Take back").first.click()
+    until(page, lambda: "set" not in requested(page))
+
+
+def test_presets_stand_in_groups_and_the_button_stays_in_sight(opened: Opens) -> None:
+    page = opened("#/new", viewport={"width": 1280, "height": 700})
+    select = page.get_by_role("combobox", name="Scenario", exact=True)
+    groups = select.locator("optgroup")
+    assert groups.evaluate_all("all => all.map((one) => one.label)")[-1] == "Hard cases"
+    select.select_option("hard/light-mud")
+    expect(page.get_by_role("button", name="Submit")).to_be_in_viewport()
+
+
 def test_what_is_submitted_is_what_was_planned(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m")
     submit = page.get_by_role("button", name=re.compile(r"Submit \d+ points"))

@@ -92,7 +92,7 @@ export const VIEWS = {
   },
   string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
   contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
-  well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
+  well: { name: "Well", table: "statics", kind: "several", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
   modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
   effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },

@@ -4,9 +4,9 @@ import { frames, valueAt } from "../data/snapshots.js";
 import { kindsOf, partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { nodeFrames } from "../data/well-frames.js";
-import { GRADIENT } from "../draw/colours.js";
-import { StringScene } from "../draw/string-scene.js";
-import { freeView, planView, readView, roundedView, sayView, sectionView } from "../draw/viewpoint.js";
+import { scaleParts, scaleWords } from "../draw/colour-scale.js";
+import { SharedView } from "../draw/shared-view.js";
+import { KEYS } from "../draw/string-scene.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { BEYOND } from "./contacts.js";
@@ -14,7 +14,7 @@ import { colourName, EXAGGERATIONS, PlayerChoices, SPEEDS } from "./player-choic
 import { coloursOf } from "./string-colours.js";
 import { saveStrings } from "./string-file.js";
 
-/** Rest of the view and the time before the link holds them. */
+/** Rest of the time before the link holds it. */
 const REST_MS = 200;
 
 /** @typedef {import("../data/snapshots.js").Frames} Frames */
@@ -22,7 +22,7 @@ const REST_MS = 200;
 
 /**
  * One string with its picture.
- * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, colours: import("./string-colours.js").Colours, scene: StringScene}} Actor
+ * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
  */
 
 export class StringPlayer {
@@ -33,9 +33,7 @@ export class StringPlayer {
   #keep;
   #signal;
   #keepTime;
-  /** Shows the strings from a viewpoint. @type {(view: import("../draw/viewpoint.js").View) => void} */
-  #turnTo;
-  #section;
+  #view;
   #controls = h("div", { class: "controls" });
   #wrong = h("p", { class: "wrong", role: "alert" });
   #legend = h("div", { class: "scale" });
@@ -70,9 +68,7 @@ export class StringPlayer {
     this.#signal = signal;
     const geometries = strings.map(({ statics }) => nodeFrames(statics));
     // Several strings are seen from one place: that of the first one's section.
-    const usual = roundedView(sectionView(geometries[0].axis));
-    const view = readView(query.get("turn") ?? "", usual);
-    const keepView = debounced(() => keep({ turn: sayView(view, usual) || null }), REST_MS, signal);
+    this.#view = new SharedView(geometries[0].axis, { query, keep, signal });
     this.#keepTime = debounced(
       () =>
         this.#isPlaying ||
@@ -80,27 +76,14 @@ export class StringPlayer {
       REST_MS,
       signal,
     );
-    const turned = () => {
-      for (const { scene } of this.#actors) scene.turned();
-      keepView();
-    };
-    this.#turnTo = (to) => {
-      Object.assign(view, to);
-      turned();
-    };
-    this.#section = usual;
     this.#actors = strings.map((one, order) => ({
       ...one,
       geometry: geometries[order],
       kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
       motion: null,
       colours: { value: () => 0, range: [0, 1] },
-      scene: new StringScene(
+      scene: this.#view.scene(
         `The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`,
-        view,
-        usual,
-        turned,
-        signal,
       ),
     }));
     signal.addEventListener("abort", () => this.#setPlaying(false), { once: true });
@@ -122,6 +105,7 @@ export class StringPlayer {
 
   #panels() {
     return this.#actors.map(({ scene, heading }) => {
+      scene.element.setAttribute("aria-keyshortcuts", `Space ${KEYS}`);
       scene.element.addEventListener("keydown", (event) => {
         if (event.key !== " ") return;
         event.preventDefault();
@@ -187,7 +171,7 @@ export class StringPlayer {
       this.#entry("to depth", "bottom", depths.to, "measured_depth", show),
       this.#entry("From", "from", span.from, "time", load),
       this.#entry("to", "to", span.to, "time", load),
-      this.#viewpoints(),
+      this.#view.buttons(),
       h(
         "button",
         { onclick: () => this.#save("png"), "aria-label": "Save the string as PNG" },
@@ -198,21 +182,6 @@ export class StringPlayer {
         { onclick: () => this.#save("svg"), "aria-label": "Save the string as SVG" },
         "Save as SVG",
       ),
-    );
-  }
-
-  /** Buttons for viewpoints. */
-  #viewpoints() {
-    /** @type {[string, import("../draw/viewpoint.js").View][]} */
-    const views = [
-      ["Section", this.#section],
-      ["Plan", roundedView(planView())],
-      ["Free view", freeView()],
-    ];
-    return h(
-      "span",
-      { role: "group", "aria-label": "Viewpoint", style: "display:flex;gap:.3rem" },
-      views.map(([text, view]) => h("button", { onclick: () => this.#turnTo(view) }, text)),
     );
   }
 
@@ -279,28 +248,13 @@ export class StringPlayer {
   /** Name of the colours with the ends of their scale, and the time, in words. */
   #words() {
     const [name] = this.#choices.colour;
-    const { symbol } = unit(name);
-    const [least, largest] = shown(name, this.#actors[0].colours.range).map((value) =>
-      String(Number(Number(value).toPrecision(3))),
-    );
-    return {
-      text: `${colourName(name)}${symbol ? ` [${symbol}]` : ""}`,
-      least,
-      largest,
-      time: this.#clock.textContent ?? "",
-    };
+    const scale = scaleWords(name, colourName(name), this.#actors[0].colours.range);
+    return { ...scale, time: this.#clock.textContent ?? "" };
   }
 
   #drawLegend() {
-    const { text, least, largest } = this.#words();
     const { factor, colour } = this.#choices;
-    fill(
-      this.#legend,
-      h("span", { class: "small" }, text),
-      h("span", { class: "small number" }, least),
-      h("span", { class: "gradient", style: `background:${GRADIENT}`, "aria-hidden": "true" }),
-      h("span", { class: "small number" }, largest),
-    );
+    fill(this.#legend, scaleParts(this.#words()));
     const counts = this.#actors.map(({ motion, there, heading }) => {
       if (!motion) return "";
       const all =
@@ -390,6 +344,7 @@ export class StringPlayer {
 
   /** @param {"png" | "svg"} format */
   #save(format) {
-    saveStrings(format, this.#actors, this.#words());
+    const words = this.#words();
+    saveStrings(`string-in-motion-${words.time.replace(/[^\d.]+/g, "")}-s`, format, this.#actors, words);
   }
 }

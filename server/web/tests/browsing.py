@@ -30,7 +30,6 @@ COMPARED = {
     "history": "Histories",
     "rotation": "Rotation and torque",
     "spectrum": "Full spectra",
-    "well": "Well",
     "energy": "Energy",
 }
 """Views of a comparison that have one picture, and its name."""
@@ -133,9 +132,9 @@ def said(bias: float) -> str:
     return "below 0.01 %" if abs(bias) < 1e-4 else f"{sign}{float(f'{abs(100 * bias):.2g}'):g} %"
 
 
-def scene(page: Page) -> Locator:
-    """The picture of the string, once it is drawn."""
-    picture = page.get_by_role("application", name=re.compile("The string moving"))
+def scene(page: Page, name: str = "The string moving") -> Locator:
+    """The first picture of a string, once it is drawn."""
+    picture = page.get_by_role("application", name=re.compile(name)).first
     expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
     return picture
 

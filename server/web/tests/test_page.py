@@ -240,7 +240,7 @@ def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sw
 
 @pytest.mark.parametrize(
     ("view", "picture"),
-    [("profiles", "Profiles"), ("motion", "Orbit of node"), ("well", "The well"), ("energy", "Energy by account")],
+    [("profiles", "Profiles"), ("motion", "Orbit of node"), ("energy", "Energy by account")],
 )
 def test_every_view_of_a_point_is_shown(opened: Opens, named: Sweep, view: str, picture: str) -> None:
     drawn(opened(f"#/sweeps/{named.id}/points/1?view={view}"), picture)

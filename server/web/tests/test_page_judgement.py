@@ -29,6 +29,24 @@ def test_a_point_begins_with_its_class_and_the_numbers_behind_it(opened: Opens, 
     expect(side_force).to_contain_text("klbf")
 
 
+def test_an_overview_leads_from_small_pictures_to_their_views(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1")
+    summary = sweep.point(1).summary
+    assert summary is not None
+    sizes = {node: summary[f"orbit_radius_rms_{node}"] for node in (10, 49, 282)}
+    largest = max(sizes, key=lambda node: float(sizes[node]))
+    overview = page.locator("details.overview")
+    tiles = overview.get_by_role("link")
+    expect(tiles).to_have_count(4)
+    track = overview.get_by_role("img", name=re.compile("String over depth: drill pipe, .*bit to 200 m"))
+    expect(track).to_be_visible()
+    for picture in overview.get_by_role("img").all():
+        assert picture.evaluate("canvas => canvas.getContext('2d').getImageData(0, 0, 300, 100).data.some(Boolean)")
+    expect(overview).to_contain_text(f"{float(f'{1000 * sizes[largest]:.3g}'):g} mm rms")
+    tiles.filter(has_text="looking downhole").click()
+    expect(page.get_by_role("figure", name=re.compile(f"Orbit of node {largest} "))).to_be_visible()
+
+
 def test_a_point_without_a_result_has_no_headline(opened: Opens, client: Client) -> None:
     waiting = client.submit("paper-200m", name="waiting", priority=-10)
     waiting.cancel()

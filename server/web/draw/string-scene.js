@@ -34,6 +34,7 @@ const NEAR = 14;
  * @property {(node: number) => number | null} value that colours it; a node without one has the colour of text
  * @property {string} [colour] of all of the string, in place of its values
  * @property {[number, number]} range of the colours
+ * @property {(node: number) => number} [turn] of the string at a node [rad], which a stripe along it and a dial show
  * @property {(node: number) => boolean} [isMarked] whether a node has a dot
  * @property {import("../data/string-parts.js").Kind[]} kinds part of the string at each element
  * @property {Scene[]} [fits] scenes in pictures of the same size that are drawn to the scale at which each of them fits
@@ -218,6 +219,7 @@ function drawAll(pen, scene, view, width, height) {
   drawDepths(pen, scene, project);
   if (scene.rest) drawLine(pen, scene, scene.rest, project);
   drawString(pen, scene, project);
+  if (scene.turn) drawDial(pen, scene.stretch.map(scene.turn), width);
   drawCompass(pen, view, height);
 }
 
@@ -400,8 +402,50 @@ function drawString(pen, scene, project) {
   strokes(2.5, () => ink);
   strokes(0, (node) => paintOf(scene, node));
   pen.lineCap = "butt";
+  if (scene.turn) drawStripe(pen, scene, scene.turn, places);
   if (last === frames.axis.length - 1) drawBit(pen, places, paintOf(scene, last));
   places.forEach((at, index) => isMarked?.(first + index) && drawDot(pen, at, paintOf(scene, first + index)));
+}
+
+/** Draws a stripe that is painted along the string, where it faces the reader. @param {Pen} pen @param {Scene} scene @param {(node: number) => number} turn @param {number[][]} places */
+function drawStripe(pen, { stretch: [first], kinds }, turn, places) {
+  pen.lineWidth = 1.5;
+  pen.strokeStyle = inks().panel;
+  for (let index = 1; index < places.length; index += 1) {
+    const angle = turn(first + index);
+    if (Math.cos(angle) <= 0) continue;
+    const [[x0, y0], [x1, y1]] = [places[index - 1], places[index]];
+    const aside =
+      (0.4 * WIDTHS[kinds[first + index - 1]] * Math.sin(angle)) / (Math.hypot(x1 - x0, y1 - y0) || 1);
+    const ends = [
+      [x0 - aside * (y1 - y0), y0 + aside * (x1 - x0)],
+      [x1 - aside * (y1 - y0), y1 + aside * (x1 - x0)],
+    ];
+    path(pen, 0, 1, (end) => ends[end]);
+  }
+}
+
+/** Radius of the dial, and its distance from the corner [pixels]. */
+const [DIAL, ASIDE] = [20, 34];
+
+/** Draws the turn of the upper and of the lower end as hands of a dial. @param {Pen} pen @param {number[]} turns [rad] @param {number} width */
+function drawDial(pen, [upper, lower], width) {
+  const { text, soft } = inks();
+  const [x, y] = [width - ASIDE, ASIDE];
+  pen.lineWidth = 1;
+  pen.strokeStyle = soft;
+  pen.beginPath();
+  pen.arc(x, y, DIAL, 0, 2 * Math.PI);
+  pen.stroke();
+  const hands = [
+    { turn: upper, thick: 1.5, ink: soft },
+    { turn: lower, thick: 3.5, ink: text },
+  ];
+  for (const { turn, thick, ink } of hands) {
+    [pen.lineWidth, pen.strokeStyle] = [thick, ink];
+    const tip = [x + DIAL * Math.sin(turn), y - DIAL * Math.cos(turn)];
+    path(pen, 0, 1, (end) => (end ? tip : [x, y]));
+  }
 }
 
 /** Colour of the string at a node. @param {Scene} scene @param {number} node */

@@ -1,6 +1,7 @@
 // Strings moving in their holes, played from snapshots on one clock: the string of a point, or several side by side.
 
 import { frames, valueAt } from "../data/snapshots.js";
+import { magnified, MAGNIFICATIONS, meansOf, suitedMagnification } from "../data/mean-motion.js";
 import { kindsOf, partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { nodeFrames } from "../data/well-frames.js";
@@ -22,7 +23,7 @@ const REST_MS = 200;
 
 /**
  * One string with its picture.
- * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
+ * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, means: import("../data/mean-motion.js").Means | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
  */
 
 export class StringPlayer {
@@ -81,6 +82,7 @@ export class StringPlayer {
       geometry: geometries[order],
       kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
       motion: null,
+      means: null,
       colours: { value: () => 0, range: [0, 1] },
       scene: this.#view.scene(
         `The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`,
@@ -133,7 +135,7 @@ export class StringPlayer {
   }
 
   #drawControls() {
-    const { offered, colour, factor, speed, depths, span } = this.#choices;
+    const { offered, colour, factor, magnification, isStriped, speed, depths, span } = this.#choices;
     const set =
       (/** @type {string} */ name, /** @type {() => void} */ then) => (/** @type {string} */ value) => {
         this.#keep({ [name]: value });
@@ -162,6 +164,19 @@ export class StringPlayer {
         set("exaggerate", show),
       ),
       choice(
+        "Motion about the mean",
+        [
+          ["", `as it suits${this.#moving.length ? `, ${this.#magnification} times more` : ""}`],
+          ...MAGNIFICATIONS.map(
+            (step) =>
+              /** @type {[string, string]} */ ([String(step), step === 1 ? "no more" : `${step} times more`]),
+          ),
+        ],
+        String(magnification ?? ""),
+        set("motion", show),
+      ),
+      this.#choices.has("theta_z") && this.#stripeTick(isStriped),
+      choice(
         "Speed",
         SPEEDS.map((text) => [text, speedName(text)]),
         String(speed),
@@ -183,6 +198,27 @@ export class StringPlayer {
         "Save as SVG",
       ),
     );
+  }
+
+  /** @param {boolean} isStriped */
+  #stripeTick(isStriped) {
+    const box = h("input", {
+      type: "checkbox",
+      checked: isStriped,
+      onchange: () => {
+        this.#keep({ stripe: box.checked ? null : "no" });
+        attend(this.load(), this.#signal);
+      },
+    });
+    return h("label", { class: "tick" }, box, "Stripe");
+  }
+
+  /** Factor by which the motion about the mean is multiplied, one for all strings. */
+  get #magnification() {
+    const suited = this.#actors.flatMap(({ means, statics }) =>
+      means ? [suitedMagnification(means.reach, statics.clearance)] : [],
+    );
+    return this.#choices.magnification ?? Math.min(...suited);
   }
 
   /** A field for a number of the link. @param {string} text @param {string} name @param {number} value @param {string} quantity @param {() => void} then */
@@ -209,7 +245,13 @@ export class StringPlayer {
     this.#wrong.textContent = "";
     this.#drawControls();
     this.#setPlaying(false);
-    const names = ["u", "v", ...(this.#choices.has("normal_force") ? ["normal_force"] : [])];
+    const { isStriped } = this.#choices;
+    const names = [
+      "u",
+      "v",
+      ...(this.#choices.has("normal_force") ? ["normal_force"] : []),
+      ...(isStriped ? ["theta_z"] : []),
+    ];
     const taken = await Promise.all(
       this.#actors.map(({ context, there }) => frames(context, names, span, there.nodes)),
     );
@@ -219,7 +261,11 @@ export class StringPlayer {
       this.#wrong.textContent = `There are no two snapshots${still.heading && ` of ${still.heading}`} in this window; the next are ${say("time", still.there.interval)} apart.`;
       return;
     }
-    this.#actors.forEach((actor, order) => (actor.motion = taken[order]));
+    this.#actors.forEach((actor, order) => {
+      actor.motion = taken[order];
+      actor.means = meansOf(taken[order]);
+    });
+    this.#drawControls();
     this.#slider.min = String(this.#first);
     this.#slider.max = String(this.#end);
     await this.#recolour();
@@ -253,7 +299,8 @@ export class StringPlayer {
   }
 
   #drawLegend() {
-    const { factor, colour } = this.#choices;
+    const { factor, colour, isStriped } = this.#choices;
+    const magnification = this.#magnification;
     fill(this.#legend, scaleParts(this.#words()));
     const counts = this.#actors.map(({ motion, there, heading }) => {
       if (!motion) return "";
@@ -265,7 +312,7 @@ export class StringPlayer {
     });
     fill(
       this.#caption,
-      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Tool joints, collars and stabilizers are wider than pipe; the cone is the bit. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
+      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Tool joints, collars and stabilizers are wider than pipe; the cone is the bit. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}${magnification === 1 ? "" : `, and the motion about the mean position ${magnification} times more, so that it can pass the rings`}.${isStriped ? " The stripe is painted along the string; the dial shows the turn of its deep end (thick) and of its top (thin)." : ""}${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
     );
   }
 
@@ -275,8 +322,9 @@ export class StringPlayer {
       depths: { from, to },
       factor,
     } = this.#choices;
-    for (const { motion, statics, scene, geometry, colours, kinds } of this.#actors) {
-      if (!motion) continue;
+    const magnification = this.#magnification;
+    for (const { motion, means, statics, scene, geometry, colours, kinds, context } of this.#actors) {
+      if (!motion || !means) continue;
       const depth = statics.measured_depth;
       const upper = Math.max(
         0,
@@ -293,12 +341,29 @@ export class StringPlayer {
           lower < 0 ? depth.length - 1 : Math.max(lower, upper + 1),
         ],
         factor,
-        place: (node) => [valueAt(motion, "u", node, this.#time), valueAt(motion, "v", node, this.#time)],
+        place: (node) => {
+          const now = /** @type {[number, number]} */ (
+            ["u", "v"].map((name) => valueAt(motion, name, node, this.#time))
+          );
+          return magnified(means, node, now, magnification);
+        },
+        turn:
+          motion.columns.theta_z && this.#turn(motion, context.point.scenario.operation.rotation_speed_rpm),
         rest: (node) => [statics.u[node], statics.v[node]],
         ...colours,
       });
     }
     this.#drawLegend();
+  }
+
+  /**
+   * Turn of the string at a node: that of the drive, and the twist.
+   * @param {Frames} motion with theta_z
+   * @param {number} speed of the drive [rpm]
+   * @returns {(node: number) => number} [rad]
+   */
+  #turn(motion, speed) {
+    return (node) => (speed * Math.PI * this.#time) / 30 + valueAt(motion, "theta_z", node, this.#time);
   }
 
   /** Stops at a time. @param {number} time [s] */

@@ -134,6 +134,26 @@ def test_a_point_without_snapshots_says_what_to_ask_for(opened: Opens, sweep: Sw
     assert scenario["recording"]["snapshots"] == {"rate_hz": 25}
 
 
+def test_motion_is_enlarged_apart_from_sag_and_a_stripe_shows_the_rotation(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&time=0.25")
+    picture = scene(page)
+    enlarged = page.get_by_label("Motion about the mean")
+    expect(enlarged.locator("option:checked")).to_have_text(re.compile(r"as it suits, \d+ times more"))
+    suited = int(re.findall(r"\d+", enlarged.locator("option:checked").inner_text())[0])
+    assert suited > 1
+    usual = pixels(picture)
+    enlarged.select_option(str(suited))
+    assert pixels(picture) == usual
+    enlarged.select_option("1")
+    until(page, lambda: pixels(picture) != usual)
+    # The string at rest and the hole stay; a choice is kept in the link.
+    assert "motion=1" in page.url
+    plain = pixels(picture)
+    page.get_by_label("Stripe").uncheck()
+    until(page, lambda: pixels(picture) != plain)
+    assert "stripe=no" in page.url
+
+
 def test_snapshots_are_a_change_of_a_new_sweep(opened: Opens, troubles: list[str]) -> None:
     page = opened("#/new?preset=paper-200m")
     plan = page.locator("dt", has_text="Storage").locator("xpath=following-sibling::dd[1]")

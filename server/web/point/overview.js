@@ -13,7 +13,7 @@ import { link } from "../ui/router.js";
 import { endsOfHistory } from "./rotation.js";
 import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictures.js";
 
-/** @typedef {import("./part.js").PointContext} PointContext */
+/** Data of a point that an overview shows. @typedef {Pick<import("./part.js").PointContext, "point" | "path" | "query" | "diagnosis" | "table" | "signal">} Shown */
 
 /** Samples of a small picture. */
 const SAMPLES = 1500;
@@ -46,7 +46,7 @@ export class Overview {
   #tiles;
   element;
 
-  /** @param {PointContext} context @param {string[]} place of the point in links */
+  /** @param {Shown} context @param {string[]} place of the point in links */
   constructor(context, place) {
     const { point, query } = context;
     this.#context = context;
@@ -183,7 +183,7 @@ export class Overview {
   }
 
   async #drawBit() {
-    const ends = await endsOfHistory(this.#context, this.#window);
+    const ends = await endsOfHistory(/** @type {any} */ (this.#context), this.#window);
     const bit = ends.find(({ end, quantity }) => end === "bit" && quantity === "rotation_speed");
     if (!bit) return;
     const { rotation_speed_rpm } = this.#context.point.scenario.operation;

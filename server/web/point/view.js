@@ -4,13 +4,13 @@ import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
+import { Overview } from "../draw/overview.js";
 import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
 import { keep, link } from "../ui/router.js";
 import { requestLines, snippets } from "../ui/snippets.js";
 import { headline } from "./headline.js";
-import { Overview } from "./overview.js";
 import { askedOf, carried } from "./part.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */

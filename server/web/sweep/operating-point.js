@@ -4,10 +4,10 @@ import { get } from "../data/api.js";
 import { nearestRow, partOf, rangesOf, valueAtPart } from "../data/nearest-point.js";
 import { label, say, sayParameters, unit } from "../data/units.js";
 import { classWord } from "../draw/class-word.js";
+import { Overview } from "../draw/overview.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
-import { Overview } from "../point/overview.js";
 
 /** Rest of the operating point before the nearest point's pictures are requested [ms]. */
 const REST_MS = 200;
@@ -262,7 +262,6 @@ export class OperatingPoint {
     const overview = new Overview(
       {
         point,
-        path,
         query: new URLSearchParams(),
         diagnosis: () => get(`${path}/diagnosis`, {}, signal),
         table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),

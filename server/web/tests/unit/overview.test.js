@@ -8,8 +8,8 @@ import { near } from "./browser.js";
 // Pictures are made for a page.
 globalThis.ResizeObserver ??= class {};
 globalThis.addEventListener ??= () => {};
-const { overviewNode } = await import("../../point/overview.js");
-const { namedParts, rangeOf } = await import("../../point/small-pictures.js");
+const { overviewNode } = await import("../../draw/overview.js");
+const { namedParts, rangeOf } = await import("../../draw/small-pictures.js");
 
 const POINT = {
   scenario: { recording: { nodes: [{ node: 10 }, { depth: 57.7 }] } },

@@ -1,7 +1,7 @@
 // Small pictures of the overview of a point, on canvases: curves in a frame, and the string over depth.
 
 import { number, say, shown } from "../data/units.js";
-import { inks, LINES } from "../draw/plots.js";
+import { inks, LINES } from "./plots.js";
 import { h } from "../ui/dom.js";
 
 /** @typedef {{x: (number | null)[], y: (number | null)[], colour: string, isDots?: boolean}} Curve values as they are shown */

@@ -6,17 +6,26 @@ import { nodeInLink, selectedNode, spectrumRange, verifiedWindow } from "../data
 import { recordedAs } from "../data/statistics.js";
 import { partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
-import { namedLines, seenDownhole, spectrumTrace } from "../draw/orbit.js";
-import { LINES } from "../draw/plots.js";
+import { namedLines, seenDownhole, spectrumTrace } from "./orbit.js";
+import { LINES } from "./plots.js";
 import { fill, h } from "../ui/dom.js";
 import { link } from "../ui/router.js";
-import { endsOfHistory } from "./rotation.js";
 import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictures.js";
 
-/** Data of a point that an overview shows. @typedef {Pick<import("./part.js").PointContext, "point" | "path" | "query" | "diagnosis" | "table" | "signal">} Shown */
+/**
+ * Data of a point that an overview shows.
+ * @typedef {object} Shown
+ * @property {any} point with a result
+ * @property {URLSearchParams} query of the link
+ * @property {() => Promise<any>} diagnosis with causes of spectral lines
+ * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {AbortSignal} signal
+ */
 
 /** Samples of a small picture. */
 const SAMPLES = 1500;
+/** Columns of the equilibrium, those of the view of a node's motion. */
+const STATICS = "node,measured_depth,low_side_angle,clearance";
 /** Lines of the spectrum whose causes are named. */
 const CAUSES = 3;
 /** Width from which the overview is open [pixels]. */
@@ -133,7 +142,7 @@ export class Overview {
     const asked = { ...selectedNode(point.scenario, named), ...this.#window };
     const range = spectrumRange(new URLSearchParams(), point.scenario.recording.rate_hz);
     const [statics, orbit, spectrum] = await Promise.all([
-      table("statics", { fields: "node,measured_depth,low_side_angle,clearance" }),
+      table("statics", { fields: STATICS }),
       table("orbit", { ...asked, max_points: SAMPLES }),
       table("spectrum", { ...asked, window: "hann", range_hz: range, peaks: 10 }),
     ]);
@@ -183,15 +192,30 @@ export class Overview {
   }
 
   async #drawBit() {
-    const ends = await endsOfHistory(/** @type {any} */ (this.#context), this.#window);
-    const bit = ends.find(({ end, quantity }) => end === "bit" && quantity === "rotation_speed");
-    if (!bit) return;
-    const { rotation_speed_rpm } = this.#context.point.scenario.operation;
+    const { point, table } = this.#context;
+    // The service would refuse, which the browser writes of.
+    if (!point.tables.includes("history")) return;
+    const [statics, sample] = await Promise.all([
+      table("statics", { fields: STATICS }),
+      table("history", { max_points: 1 }),
+    ]);
+    const node = statics.columns.node.at(-1);
+    const speed = `rotation_speed_${node}`;
+    if (!(speed in sample.columns)) return;
+    const fields = `time,${speed}`;
+    const { columns } = await table("history", {
+      node,
+      ...this.#window,
+      fields,
+      max_points: SAMPLES,
+      decimation: "minmax",
+    });
+    const { rotation_speed_rpm } = point.scenario.operation;
     const imposed = (rotation_speed_rpm * Math.PI) / 30;
-    const values = bit.values.filter((value) => value !== null);
+    const values = columns[speed].filter((/** @type {number | null} */ value) => value !== null);
     const [least, largest] = [Math.min(...values), Math.max(...values)];
     const words = `${say("rotation_speed", least, 3)} to ${say("rotation_speed", largest, 3)} over time in s; dashed: imposed, ${say("rotation_speed", imposed, 3)}.`;
-    const curve = { x: bit.time, y: shown("rotation_speed", bit.values), colour: LINES[0] };
+    const curve = { x: columns.time, y: shown("rotation_speed", columns[speed]), colour: LINES[0] };
     const level = Number(shown("rotation_speed", [imposed])[0]);
     drawCurves(this.#show("bit", words), [curve], { level });
   }

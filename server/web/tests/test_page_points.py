@@ -413,6 +413,32 @@ def test_the_wall_is_named_where_it_is_seen_and_the_axes_by_the_low_side(opened:
     expect(page.get_by_text(expected)).to_be_visible()
 
 
+def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy")
+    picture = drawn(page, "Energy by account")
+    names = picture.evaluate("place => place._fullLayout.yaxis.categoryarray")
+    assert picture.evaluate("place => place._fullLayout.xaxis.type") == "log"
+    table = sweep.point(1).energy().to_pandas()
+    sizes = (table.iloc[-1] - table.iloc[0]).abs().drop(["time", "residual", "contact_work"], errors="ignore")
+    sizes = sizes.sort_values(ascending=False)
+    words = {"work_rotation": "work of the rotation", "dissipated_friction": "dissipated by friction"}
+    assert [words[name] for name in sizes.index if name in words] == [
+        name.partition(",")[0] for name in reversed(names) if name.partition(",")[0] in words.values()
+    ]
+    assert len(names) == len(sizes)
+    ends = [
+        (name, end)
+        for number in range(3)
+        for name, end in picture.evaluate(
+            "(place, number) => place.data[number].y.map((name, at) => [name, place.data[number].x[at]])"
+            ".filter((_, at) => at % 3 === 1)",
+            number,
+        )
+    ]
+    rotation = next(end for name, end in ends if name.startswith("work of the rotation"))
+    assert rotation == pytest.approx(sizes["work_rotation"])
+
+
 def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     last = "place => Math.max(...place.data[0].x)"

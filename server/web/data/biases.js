@@ -90,6 +90,11 @@ export class Biases {
     return typeof bias === "number" ? `bias ${sayBias(name, bias)}` : "";
   }
 
+  /** Ordinals of the verified points. */
+  get verified() {
+    return [...this.#points.keys()];
+  }
+
   /**
    * Largest bias of orbit size at a point, or else at all verified points of the sweep; null without any.
    * @param {number} ordinal

@@ -130,6 +130,8 @@ function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, foll
       drawn();
     },
     bias: (name) => biases.beside(name, Number(ordinal)),
+    measured: (number) => biases.orbitSize(number),
+    verified: biases.verified,
     diagnosis: () => (diagnosis ??= get(`${path}/diagnosis`, {}, signal)),
     table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
     drawn,

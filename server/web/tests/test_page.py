@@ -383,6 +383,12 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     expect(error).to_contain_text(
         f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise"
     )
+    costs = drawn(page, "Error of orbit size against processor time")
+    itself, others = trace(costs, 1), trace(costs, 2)
+    assert itself["y"] == [pytest.approx(worst)]
+    times = verified.point(int(table["ordinal"][1])).provenance
+    assert times is not None
+    assert others["x"] == [pytest.approx(times["transient_cpu_time"] + times["statics_cpu_time"])]
 
 
 def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:

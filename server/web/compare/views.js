@@ -37,7 +37,6 @@ const SAME_END = 1e-6;
  * @property {boolean} [isWindowed] whether it is of a window
  * @property {boolean} [isOfNode] whether it is of a recorded node
  * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
- * @property {import("../draw/library.js").Build} [build] of the drawing library, where the usual one does not do
  * @property {"table" | "several"} [kind] what it is where it is not one picture
  * @property {boolean} [isDocument] whether the service answers with a document in place of a table
  * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
@@ -50,7 +49,6 @@ export const VIEWS = {
   history: {
     name: "Histories",
     table: "orbit",
-    build: "whole",
     isWindowed: true,
     isOfNode: true,
     hasTime: true,
@@ -59,7 +57,6 @@ export const VIEWS = {
   rotation: {
     name: "Rotation and torque",
     table: "history",
-    build: "whole",
     isWindowed: true,
     isOfNode: true,
     hasTime: true,
@@ -85,7 +82,6 @@ export const VIEWS = {
   bit: {
     name: "Rotation at bit and top",
     table: "history",
-    build: "whole",
     isWindowed: true,
     hasTime: true,
     draw: drawEnds,
@@ -103,7 +99,7 @@ export const VIEWS = {
 /** @param {Compared} point @param {number[]} time @param {(number | null)[]} values @param {string} [dash] */
 function overTime(point, time, values, dash = point.dash) {
   return {
-    type: "scattergl",
+    type: "scatter",
     mode: "lines",
     name: point.name,
     showlegend: true,

@@ -30,9 +30,8 @@ export function seenDownhole(u, v, lowSide) {
  */
 export function orbitTrace(table, lowSide, line, name) {
   const { across, up } = seenDownhole(table.columns.u, table.columns.v, lowSide);
-  const isLong = across.length > 20_000;
   return {
-    type: isLong ? "scattergl" : "scatter",
+    type: "scatter",
     mode: "lines",
     x: shown("radius", across),
     y: shown("radius", up),

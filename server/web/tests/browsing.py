@@ -47,9 +47,15 @@ Opens = Callable[..., Page]
 def drawn(page: Page, name: str) -> Locator:
     """A picture, once plotly has drawn it."""
     picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator(".main-svg"))
-    # WebGL without a graphics card takes its time.
     expect(picture.first).to_be_visible(timeout=30_000)
     return picture.first
+
+
+def parallel(page: Page) -> Locator:
+    """The picture of parallel coordinates, once it is drawn."""
+    picture = page.get_by_role("figure", name="Parallel coordinates")
+    expect(picture.locator(".axis-title").first).to_be_visible()
+    return picture
 
 
 def until(page: Page, holds: Callable[[], bool]) -> None:

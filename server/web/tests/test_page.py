@@ -11,7 +11,21 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
-from browsing import COMPARED, GONE, MINUS, NASTY, REFUSED, RULES_OF_THEME, Opens, drag, drawn, requested, until
+from browsing import (
+    COMPARED,
+    GONE,
+    MINUS,
+    NASTY,
+    REFUSED,
+    RULES_OF_THEME,
+    Opens,
+    drag,
+    drawn,
+    parallel,
+    requested,
+    trace,
+    until,
+)
 from drillsweep import Axis, Client, Outputs, Sweep
 from service import SHORT, Service, make_token, revoke_token, tokens_of
 
@@ -154,6 +168,8 @@ def test_every_view_of_a_sweep_is_shown(
         expect(page.get_by_text("No point of this sweep has failed.")).to_be_visible()
     elif view == "difference":
         expect(page.get_by_text("Choose the sweep whose results")).to_be_visible()
+    elif view == "parallel":
+        assert parallel(page).locator(".axis-brush").count() == 5
     else:
         drawn(page, "." if view != "effects" else "Shares of the variance")
 

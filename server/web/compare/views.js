@@ -15,7 +15,7 @@ import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
-import { panelsInPlane, panelsOverTime } from "./panels.js";
+import { largestFirst, panelsInPlane, panelsOverTime } from "./panels.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
@@ -295,7 +295,7 @@ async function drawSpectra(place, comparison) {
     found.map(([point, table]) => ({ table, name: String(point.number) })),
     comparison.query.get("amplitude") === "log",
   );
-  return draw(place, traces, { ...layout, shows: range }, comparison.signal);
+  return draw(place, largestFirst(traces), { ...layout, shows: range }, comparison.signal);
 }
 
 /** Highest frequency of compared spectra [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
@@ -360,10 +360,7 @@ async function drawAccount(place, comparison, account) {
   );
   return draw(
     place,
-    found.map(([, { point, time, values }]) => ({
-      ...overTime(point, time, scaled(values, size)),
-      type: "scatter",
-    })),
+    largestFirst(found.map(([, { point, time, values }]) => overTime(point, time, scaled(values, size)))),
     {
       shows: account,
       xaxis: { title: "time [s]" },

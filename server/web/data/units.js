@@ -25,6 +25,8 @@ export async function loadQuantities() {
 /** Largest value of a quantity over all nodes of which a summary has it: a column that the page makes. */
 const LARGEST = /^largest_(.+)$/;
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
+/** Ratios that are shown in per cent. */
+const PER_CENT = /(^|_)error(_|$)|^relative_spread$|_spread$/;
 // A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
 const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 
@@ -90,8 +92,10 @@ export function meaning(name) {
  * @returns {{symbol: string, size: number}}
  */
 export function unit(name) {
-  const { entry, variant } = parse(name);
-  if (!entry?.unit || entry.unit === "1" || variant === "bias") return { symbol: "", size: 1 };
+  const { entry, key = "", variant } = parse(name);
+  const isRelative = variant === "bias" && entry?.unit !== "Hz";
+  if (isRelative || (entry?.unit === "1" && PER_CENT.test(key))) return { symbol: "%", size: 0.01 };
+  if (!entry?.unit || entry.unit === "1") return { symbol: "", size: 1 };
   const preferred = unitSystem() === "field" ? entry.field : entry.shown;
   return { symbol: written(preferred?.unit ?? entry.unit), size: preferred?.size ?? 1 };
 }
@@ -248,6 +252,31 @@ export function pathNames() {
 export function servedUnit(name) {
   const { entry } = parse(name);
   return entry?.unit && entry.unit !== "1" ? written(entry.unit) : "";
+}
+
+/**
+ * The unit in which numbers of a name are entered: that of the oil field if the reader chose field units, else the served one.
+ * @param {string} name
+ * @returns {{symbol: string, size: number}}
+ */
+export function inputUnit(name) {
+  const { entry } = parse(name);
+  return unitSystem() === "field" && entry?.field
+    ? readable(entry.field)
+    : { symbol: servedUnit(name), size: 1 };
+}
+
+/** All units of a name by their symbols, the served one first; none of a number without a unit. @param {string} name */
+export function unitsOf(name) {
+  const { entry } = parse(name);
+  if (!servedUnit(name)) return [];
+  const further = [entry?.shown, entry?.field].flatMap((one) => (one ? [readable(one)] : []));
+  return [{ symbol: servedUnit(name), size: 1 }, ...further];
+}
+
+/** @param {{unit: string, size: number}} unit */
+function readable({ unit: symbol, size }) {
+  return { symbol: written(symbol), size };
 }
 
 /** @param {string} symbol a unit in the registry's spelling, such as `N s/m2` */

@@ -106,3 +106,17 @@ export function inkOnClass(name) {
 
 /** The scale as a gradient of CSS, from left to right. */
 export const GRADIENT = `linear-gradient(to right, ${Array.from({ length: 11 }, (_, step) => COLOURS[Math.round((step / 10) * (STEPS - 1))]).join(", ")})`;
+
+/**
+ * Colours of values by a scale as the drawing library takes it.
+ * @param {any} scale the name of the usual one, or parts of it with their colours
+ * @param {number} least @param {number} largest
+ * @returns {(value: number) => string}
+ */
+export function colourScale(scale, least, largest) {
+  if (!Array.isArray(scale)) return (value) => colourOf(value, [least, largest]);
+  return (value) => {
+    const part = (value - least) / (largest - least || 1);
+    return scale.findLast(([from]) => from <= part)?.[1] ?? scale[0][1];
+  };
+}

@@ -167,7 +167,7 @@ function sayTorqueOnBit({ scenario }) {
 
 /** @param {import("./part.js").PointContext} context */
 export function rotation(context) {
-  const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
+  const place = canvas("Rotation speed and torque at bit and top", "rotation");
   const caption = h("figcaption", {});
   const begin = generations();
   const element = h(
@@ -198,7 +198,7 @@ export function rotation(context) {
       await draw(
         place,
         lines.map(({ end, quantity, time, values }) => ({
-          type: "scattergl",
+          type: "scatter",
           mode: "lines",
           x: time,
           y: shown(quantity, values),

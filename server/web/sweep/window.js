@@ -12,6 +12,7 @@ import { python, tableLines } from "../ui/snippets.js";
 import { CLASS } from "./categories.js";
 import { LimitInputs } from "./limit-inputs.js";
 import { SweepMap } from "./map.js";
+import { OperatingPoint } from "./operating-point.js";
 import { undelayed } from "./part.js";
 
 /** Time without a change after which points are judged anew [ms]. */
@@ -41,6 +42,7 @@ class OperatingWindow {
   #begin = generations();
   #inputs;
   #drawMap;
+  #point;
   #wrong = h("p", { class: "wrong", role: "alert" });
   #counts = h("ul", { class: "counts", "aria-label": "Points by class" });
   #uncertain = h("div", {});
@@ -67,7 +69,16 @@ class OperatingWindow {
       wordOf: (ordinal) => this.#points.get(ordinal)?.word ?? null,
       doubtOf: (ordinal) => this.#points.get(ordinal)?.doubt ?? "",
     });
-    this.#drawMap = undelayed(() => map.redraw(), context);
+    const draw = async () => {
+      await map.redraw();
+      await this.#point.redraw((ordinal) => this.#points.get(ordinal));
+    };
+    this.#point = new OperatingPoint(
+      context,
+      /** @type {HTMLElement} */ (map.element.querySelector(".plot")),
+      () => attend(draw(), context.signal),
+    );
+    this.#drawMap = undelayed(draw, context);
     this.element = h(
       "div",
       {},
@@ -75,6 +86,7 @@ class OperatingWindow {
       this.#wrong,
       this.#counts,
       map.element,
+      this.#point.element,
       this.#uncertain,
       this.#links,
     );

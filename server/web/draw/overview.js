@@ -2,7 +2,7 @@
 
 import { Problem } from "../data/api.js";
 import { causeOf, causeWords } from "../data/judgement.js";
-import { nodeInLink, selectedNode, spectrumRange, verifiedWindow } from "../data/motion-requests.js";
+import { chosenWindow, nodeInLink, nodeTables, windowTables } from "../data/motion-requests.js";
 import { recordedAs } from "../data/statistics.js";
 import { partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
@@ -24,8 +24,6 @@ import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictur
 
 /** Samples of a small picture. */
 const SAMPLES = 1500;
-/** Columns of the equilibrium, those of the view of a node's motion. */
-const STATICS = "node,measured_depth,low_side_angle,clearance";
 /** Lines of the spectrum whose causes are named. */
 const CAUSES = 3;
 /** Width from which the overview is open [pixels]. */
@@ -60,7 +58,7 @@ export class Overview {
     const { point, query } = context;
     this.#context = context;
     this.#node = overviewNode(point, query);
-    this.#window = verifiedWindow(point);
+    this.#window = chosenWindow(point, query);
     const tile = (/** @type {string} */ name, /** @type {string} */ view, size = "") => {
       const [picture, caption] = [smallCanvas(name, size), h("span", { class: "small soft" })];
       const to = link(place, { view, ...(this.#node ? { node: this.#node } : {}) });
@@ -139,12 +137,13 @@ export class Overview {
     if (!this.#node || !point.tables.includes("history")) return;
     const named = new URLSearchParams(query);
     named.set("node", this.#node);
-    const asked = { ...selectedNode(point.scenario, named), ...this.#window };
-    const range = spectrumRange(new URLSearchParams(), point.scenario.recording.rate_hz);
+    // The same requests as those of the view of the motion.
+    const [equilibrium] = nodeTables(point.scenario, named);
+    const [cut, lines] = windowTables(point.scenario, named, this.#window);
     const [statics, orbit, spectrum] = await Promise.all([
-      table("statics", { fields: STATICS }),
-      table("orbit", { ...asked, max_points: SAMPLES }),
-      table("spectrum", { ...asked, window: "hann", range_hz: range, peaks: 10 }),
+      table(...equilibrium),
+      table(...cut),
+      table(...lines),
     ]);
     this.#drawOrbit(statics.columns, orbit);
     await this.#drawSpectrum(spectrum);
@@ -192,11 +191,11 @@ export class Overview {
   }
 
   async #drawBit() {
-    const { point, table } = this.#context;
+    const { point, table, query } = this.#context;
     // The service would refuse, which the browser writes of.
     if (!point.tables.includes("history")) return;
     const [statics, sample] = await Promise.all([
-      table("statics", { fields: STATICS }),
+      table(...nodeTables(point.scenario, query)[0]),
       table("history", { max_points: 1 }),
     ]);
     const node = statics.columns.node.at(-1);

@@ -2,6 +2,7 @@
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
+import { latest } from "../data/latest.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
 import { Overview } from "../draw/overview.js";
@@ -133,7 +134,8 @@ function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, foll
     measured: (number) => biases.orbitSize(number),
     verified: biases.verified,
     diagnosis: () => (diagnosis ??= get(`${path}/diagnosis`, {}, signal)),
-    table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
+    // The overview shows tables of the views.
+    table: latest((table, asks) => get(`${path}/${table}`, { format: "json", ...asks }, signal)),
     drawn,
     signal,
   };

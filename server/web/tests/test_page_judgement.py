@@ -154,7 +154,7 @@ def test_the_operating_point_names_the_nearest_computed_point(opened: Opens, nam
     # Halfway between both densities the arrow key decides.
     cross.press("ArrowUp")
     place = {"flow_rate": 0.02, "mud_density": 1512.0, speed: 104.0}
-    chosen.get_by_label("rotation speed").fill("46.6667")
+    chosen.get_by_role("slider", name="rotation speed").fill("46.6667")
     expect(chosen.get_by_role("link", name=re.compile(r"^point \d+$"))).to_have_text(f"point {nearest(**place)}")
     word = str(table["class"][nearest(**place)]).replace("_", " ")
     expect(chosen.locator(".class-word").first).to_have_text(word)
@@ -165,7 +165,7 @@ def test_the_operating_point_names_the_nearest_computed_point(opened: Opens, nam
     # The map shows the slice that is nearest to the held value.
     held = page.get_by_label("rotation speed", exact=True).first
     expect(held).to_have_value("90")
-    chosen.get_by_label("rotation speed").fill("90")
+    chosen.get_by_role("slider", name="rotation speed").fill("90")
     expect(held).to_have_value("120")
     expect(chosen.get_by_role("img", name="Orbit")).to_be_visible()
     box = cross.bounding_box()

@@ -14,6 +14,7 @@ mod large;
 mod openapi;
 mod page;
 mod pictures;
+mod report;
 mod results;
 mod schema;
 mod shutdown;

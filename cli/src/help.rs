@@ -30,6 +30,7 @@ const GROUPS: [Group; 4] = [
             ("list", "drillsweep list --owner anne --state running"),
             ("show", "drillsweep show flow 2"),
             ("fetch", "drillsweep fetch flow --output results"),
+            ("report", "drillsweep report flow --units field --output flow.html"),
             ("cancel", "drillsweep cancel flow"),
             ("retry", "drillsweep retry flow"),
             ("pause", "drillsweep pause flow"),

@@ -16,6 +16,7 @@ mod modes;
 mod plan;
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 mod processor;
+mod report;
 mod scenario;
 mod service;
 mod simulate;
@@ -85,6 +86,8 @@ enum Command {
     Status(sweeps::StatusArguments),
     /// Download a sweep's table and files.
     Fetch(fetch::FetchArguments),
+    /// Write a printable report of a sweep or of one point, as HTML.
+    Report(report::ReportArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
     /// Print a plan of a scenario, without running it: effects with reasons, steps and time at each accuracy.
@@ -209,6 +212,7 @@ fn run() -> anyhow::Result<()> {
         Command::Failures(arguments) => sweeps::failures(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),

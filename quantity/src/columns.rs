@@ -102,7 +102,7 @@ quantities! {
 
     // Equilibrium.
     /// Normal force of the wall on the node.
-    NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
+    NORMAL_FORCE: "normal_force", "F_n", FORCE, "side force";
     /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
     EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
     /// Compression over the load from which the string buckles sinusoidally in its hole; 0 in tension, helical from sqrt(2) on.
@@ -118,19 +118,19 @@ quantities! {
     /// Nodes that touch the wall at the equilibrium.
     STATIC_CONTACTS: "static_contacts", "", -, "static contacts";
     /// Sum of the normal forces at the equilibrium.
-    STATIC_NORMAL_FORCE_TOTAL: "static_normal_force_total", "", FORCE, "static normal force total";
+    STATIC_NORMAL_FORCE_TOTAL: "static_normal_force_total", "", FORCE, "total side force at rest";
     /// Effective tension of the uppermost element.
-    TENSION_TOP: "tension_top", "", FORCE, "tension top";
+    TENSION_TOP: "tension_top", "", FORCE, "surface tension";
     /// Effective tension of the lowest element.
-    TENSION_BIT: "tension_bit", "", FORCE, "tension bit";
+    TENSION_BIT: "tension_bit", "", FORCE, "tension at the bit";
     /// Torque of the uppermost element at the equilibrium that the run starts from, `statics.friction`.
-    TORQUE_TOP: "torque_top", "", TORQUE, "torque top";
+    TORQUE_TOP: "torque_top", "", TORQUE, "surface torque";
     /// Torque of the uppermost element at break-away: friction mu_s at every node that touches; absent if that equilibrium was not found.
-    TORQUE_TOP_BREAK_AWAY: "torque_top_break_away", "", TORQUE, "torque top at break-away";
+    TORQUE_TOP_BREAK_AWAY: "torque_top_break_away", "", TORQUE, "surface torque at break-away";
     /// Torque of the uppermost element of the rotating string: friction mu at the sliding speed of each node; absent if that equilibrium was not found.
-    TORQUE_TOP_ROTATING: "torque_top_rotating", "", TORQUE, "torque top rotating";
+    TORQUE_TOP_ROTATING: "torque_top_rotating", "", TORQUE, "surface torque while rotating";
     /// Torque of the lowest element.
-    TORQUE_BIT: "torque_bit", "", TORQUE, "torque bit";
+    TORQUE_BIT: "torque_bit", "", TORQUE, "torque at the bit";
 
     // Mud.
     /// Fluid friction coefficient of the string in the annulus.
@@ -189,7 +189,7 @@ quantities! {
     /// Time in contact with the wall.
     CONTACT_TIME: "contact_time", "", TIME, "contact time";
     /// Largest normal force of the wall.
-    LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest normal force";
+    LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest side force";
     /// Number of slip-to-stick transitions of the node; in a summary of all nodes together.
     SLIP_TO_STICK_COUNT: "capture_count", "", -, "slip-to-stick transitions";
     /// Time that the node stuck.
@@ -386,19 +386,19 @@ quantities! {
     /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
     STORED: "stored", "", ENERGY, "stored";
     /// Work of the unbalance up to this time.
-    WORK_UNBALANCE: "work_unbalance", "", ENERGY, "work unbalance";
+    WORK_UNBALANCE: "work_unbalance", "", ENERGY, "work of the unbalance";
     /// Work of the rotation imposed at the top against friction up to this time, as far as it acts through the contacts.
-    WORK_ROTATION: "work_rotation", "", ENERGY, "work rotation";
+    WORK_ROTATION: "work_rotation", "", ENERGY, "work of the rotation";
     /// Work of the flows (Coriolis and follower forces) and of the follower torque up to this time.
     WORK_FLOW_AND_TORQUE: "work_flow_and_torque", "", ENERGY, "work of flow and follower torque";
     /// Energy dissipated by structural damping up to this time.
-    DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated structure";
+    DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated by the structure";
     /// Energy dissipated by the mud up to this time.
-    DISSIPATED_FLUID: "dissipated_fluid", "", ENERGY, "dissipated fluid";
+    DISSIPATED_FLUID: "dissipated_fluid", "", ENERGY, "dissipated by the mud";
     /// Energy dissipated by friction at contacts up to this time.
-    DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated friction";
+    DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated by friction";
     /// Energy dissipated by the wall's dampers up to this time.
-    DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated contact";
+    DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated by the wall";
     /// Net work of contact and friction forces on the motion up to this time.
     CONTACT_WORK: "contact_work", "", ENERGY, "contact work";
     /// Imbalance of energy: the error of the time integration.
@@ -418,25 +418,25 @@ quantities! {
     /// Amplitude with the samples weighted by a Hann window.
     AMPLITUDE_HANN: "amplitude_hann", "", WIDTH, "amplitude hann";
     /// Frequency of the highest line; negative is backward whirl.
-    LINE_FREQUENCY_HZ: "line_frequency_hz", "", FREQUENCY, "line frequency hz";
+    LINE_FREQUENCY_HZ: "line_frequency_hz", "", FREQUENCY, "frequency of the highest line";
     /// Amplitude of the highest line.
-    LINE_AMPLITUDE: "line_amplitude", "", WIDTH, "line amplitude";
+    LINE_AMPLITUDE: "line_amplitude", "", WIDTH, "amplitude of the highest line";
     /// Root mean square motion about the mean at frequencies up to 20 Hz.
     BAND_RMS: "band_rms", "", WIDTH, "band rms";
 
     // Statistics of orbits.
     /// Distance of the orbit's mean position from the hole's axis.
-    ORBIT_OFFSET: "orbit_offset", "", WIDTH, "orbit offset";
+    ORBIT_OFFSET: "orbit_offset", "", WIDTH, "offset of the mean position";
     /// Mean distance from the hole's axis.
-    ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "orbit mean radius";
+    ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "mean distance from the axis";
     /// Largest distance from the hole's axis.
-    ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "orbit largest radius";
+    ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "largest distance from the axis";
     /// Smallest distance from the hole's axis.
-    ORBIT_SMALLEST_RADIUS: "orbit_smallest_radius", "", WIDTH, "orbit smallest radius";
+    ORBIT_SMALLEST_RADIUS: "orbit_smallest_radius", "", WIDTH, "smallest distance from the axis";
     /// Orbit size: root mean square distance from the mean position.
-    ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "orbit radius rms";
+    ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "lateral vibration";
     /// Standard deviation of the distance from the hole's axis.
-    ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "orbit radius deviation";
+    ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "deviation of the radius";
     /// Largest less smallest displacement along the first axis of the node's frame.
     PEAK_TO_PEAK_U: "peak_to_peak_u", "", WIDTH, "peak to peak u";
     /// Largest less smallest displacement along the second axis of the node's frame.
@@ -454,13 +454,13 @@ quantities! {
     /// Largest relative difference of orbit size or radius deviation between the halves of the window, over the recorded nodes; absent if the motion has settled.
     HALVES_DIFFER: "halves_differ", "", RATIO, "halves differ";
     /// Frequency of the torsional mode that still grows at the end of the run; absent if none does.
-    GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "growing mode hz";
+    GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "frequency of the growing mode";
     /// Growth of that mode's amplitude while it is small.
-    GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growing mode rate";
+    GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growth of the growing mode";
     /// Lower base frequency of regular motion.
-    BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "base frequency 1 hz";
+    BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "lower base frequency";
     /// Higher base frequency of regular motion; absent if there is one alone.
-    BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "base frequency 2 hz";
+    BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "higher base frequency";
     /// Runs of the point, the undisturbed one among them.
     ENSEMBLE_MEMBERS: "ensemble_members", "", -, "ensemble members";
     /// Time at which histories of neighbouring starts first part.
@@ -468,7 +468,7 @@ quantities! {
 
     // Errors and limits of a result.
     /// Frequency up to which the run's steps resolve vibrations.
-    RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "resolved hz";
+    RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "highest resolved frequency";
     /// Steps of the shortest length that left more than the tolerance.
     UNRESOLVED_STEPS: "unresolved_steps", "", -, "unresolved steps";
     /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion; absent if histories part.
@@ -482,9 +482,9 @@ quantities! {
     /// Relative error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
     PROMISED_ERROR: "promised_error", "", RATIO, "promised error";
     /// Estimated relative error of orbit statistics by the time steps; absent if histories part.
-    TIME_ERROR: "time_error", "", RATIO, "time error";
+    TIME_ERROR: "time_error", "", RATIO, "error by time steps";
     /// Estimated relative error of orbit size by the window: differences between the windows of regular motion, half the confidence interval of irregular; absent if the motion has not settled or the window is fixed.
-    SAMPLING_ERROR: "sampling_error", "", RATIO, "sampling error";
+    SAMPLING_ERROR: "sampling_error", "", RATIO, "error by the window";
     /// Standard deviation of orbit size over the ensemble, relative to its mean.
     RELATIVE_SPREAD: "relative_spread", "", RATIO, "relative spread";
     /// Estimated relative error of the static distance from the hole's axis by the mesh.
@@ -510,9 +510,9 @@ quantities! {
     /// Kind of growth of small motions about the equilibrium.
     INSTABILITY: "instability", "", -, "instability";
     /// Growth rate of the mode that grows fastest.
-    INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
+    INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "growth of the instability";
     /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
-    INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
+    INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "frequency of the instability";
     /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet; not_judged without loads.
     CLASS: "class", "", -, "class";
     /// Reason for which the class is uncertain: statistics have not settled, or the estimated error reaches across a limit.

@@ -132,6 +132,11 @@ impl OperatingLimits {
         limits
     }
 
+    /// Limits by column, in the column's unit.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.0.iter().map(|(column, limit)| (column.as_str(), *limit))
+    }
+
     /// The same limits times a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self(self.0.iter().map(|(column, limit)| (column.clone(), factor * limit)).collect())

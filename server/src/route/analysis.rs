@@ -146,24 +146,42 @@ pub(crate) async fn diagnosis(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
+    let diagnosis = diagnose(&app, &caller, &id, point, &limits).await?;
+    Ok(tag.on(Json(diagnosis).into_response()))
+}
+
+/// Diagnosis of a point that has failed or has a result.
+///
+/// # Errors
+/// The point has neither, with its state.
+pub(super) async fn diagnose(
+    app: &App,
+    caller: &Caller,
+    id: &str,
+    point: PointDetail,
+    limits: &OperatingLimits,
+) -> Result<Diagnosis> {
     if let Some(error) = &point.row.error {
-        let judgement = Judgement::of_failure(&error.reason, &limits);
-        return Ok(tag.on(Json(Diagnosis { judgement, lines: Vec::new() }).into_response()));
+        let judgement = Judgement::of_failure(&error.reason, limits);
+        return Ok(Diagnosis { judgement, lines: Vec::new() });
     }
+    let n = point.row.ordinal;
     // Reports the state of a point without a result.
-    recordings::result_key(&app.store, &id, n).await?;
-    let lines = recordings::stored_if_any(&app.store, &id, n, tables::LINES.name).await?;
+    recordings::result_key(&app.store, id, n).await?;
+    let lines = recordings::stored_if_any(&app.store, id, n, tables::LINES.name).await?;
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let limits = limits.clone();
     let diagnose = move |_: &mut Work| {
         let lines = lines.map(|lines| lines.read(None)).transpose()?.and_then(|table| Line::of_table(&table));
         let summary = point.summary.unwrap_or_default();
         Ok(analysis::diagnosis(&point.scenario, &summary, lines, &limits)?)
     };
     let (diagnosis, _memory): (Diagnosis, _) = place.run(diagnose).await?;
-    Ok(tag.on(Json(diagnosis).into_response()))
+    Ok(diagnosis)
 }
 
-async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {
+/// A point with its scenario, without the names of its tables.
+pub(super) async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {
     let Some(record) = app.store.point(id, n.into()).await? else {
         return Err(records::no_such_point(&app.store, id, n).await?);
     };

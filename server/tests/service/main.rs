@@ -15,7 +15,11 @@ mod limits;
 mod openapi;
 mod page;
 mod pictures;
+<<<<<<< HEAD
 mod refinement;
+=======
+mod report;
+>>>>>>> w-report
 mod results;
 mod schema;
 mod shutdown;

@@ -1,7 +1,6 @@
 // Labels and units of columns and of a scenario's fields.
 
 import { getNeeded } from "./api.js";
-import { FIELD_NAMES } from "./field-names.js";
 import { unitSystem } from "./settings.js";
 
 /**
@@ -12,6 +11,7 @@ import { unitSystem } from "./settings.js";
  * @property {string} [unit] the unit in which it is served
  * @property {{unit: string, size: number}} [shown]
  * @property {{unit: string, size: number}} [field]
+ * @property {{word: string, colour: string}[]} [words] of a column of texts that has few, in their order
  */
 
 /** @type {Record<string, Entry>} */
@@ -33,20 +33,18 @@ const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 /**
  * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, key?: string, depth?: string, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
-  if (registry[name]) return { entry: registry[name], key: name };
+  if (registry[name]) return { entry: registry[name] };
   const largest = LARGEST.exec(name)?.[1];
-  if (largest && registry[largest]) return { entry: registry[largest], key: largest, variant: "largest" };
+  if (largest && registry[largest]) return { entry: registry[largest], variant: "largest" };
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
   const place = PLACE.exec(rest);
-  const key = rest.replace(PLACE, "");
   return {
-    entry: registry[key],
-    key,
+    entry: registry[rest.replace(PLACE, "")],
     variant: variant?.[1],
     depth: place?.[1]?.slice(0, -1).replace("_", "."),
     node: place?.[2],
@@ -59,9 +57,9 @@ function parse(name) {
  * @param {string} name
  */
 export function label(name) {
-  const { entry, key = "", depth, node, window, variant } = parse(name);
+  const { entry, depth, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
-  const words = FIELD_NAMES[key] ?? entry.label;
+  const words = entry.label;
   if (variant === "largest") return `largest ${words} of all recorded nodes`;
   const parts = [variant ? `${variant.replaceAll("_", " ")} of ${words}` : words];
   if (depth) parts[0] += ` at ${depth} m`;
@@ -78,6 +76,11 @@ export function label(name) {
 export function nodeOfColumn(name) {
   const { node, depth } = parse(name);
   return node ?? (depth === undefined ? "" : `${depth}m`);
+}
+
+/** Words of a column of texts that has few, in their order. @param {string} name */
+export function wordsOfColumn(name) {
+  return registry[name]?.words ?? [];
 }
 
 /** @param {string} name */

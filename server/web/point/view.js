@@ -9,6 +9,7 @@ import { Overview } from "../draw/overview.js";
 import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
+import { reportLink } from "../ui/report-link.js";
 import { keep, link } from "../ui/router.js";
 import { requestLines, snippets } from "../ui/snippets.js";
 import { headline } from "./headline.js";
@@ -205,7 +206,14 @@ function headingPart({ sweep, ordinal, query }, point) {
         h("p", {}, sayParameters(point.parameters)),
         statePart(point),
       ),
-      h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), compare),
+      h(
+        "div",
+        { class: "controls" },
+        neighbour(-1, "← Previous"),
+        neighbour(1, "Next →"),
+        compare,
+        reportLink(point.links.self),
+      ),
     ),
     point.error && errorPart(point.error),
   ];

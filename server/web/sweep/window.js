@@ -1,7 +1,7 @@
 // Operating window of a sweep: the class of each point over the parameters, by limits that the reader moves.
 
 import { get, Problem } from "../data/api.js";
-import { CLASSES, classWords } from "../data/judgement.js";
+import { classes, classWords } from "../data/judgement.js";
 import { changedLimits, limitsText, parseLimits } from "../data/limits.js";
 import { classWord } from "../draw/class-word.js";
 import { debounced, fill, h } from "../ui/dom.js";
@@ -135,10 +135,11 @@ class OperatingWindow {
       ]),
     );
     const counts = /** @type {Record<string, number>} */ (attributes.points_by_class);
-    const judged = CLASSES.reduce((sum, name) => sum + (counts[name] ?? 0), 0);
+    const known = classes().map(({ word }) => word);
+    const judged = known.reduce((sum, name) => sum + (counts[name] ?? 0), 0);
     fill(
       this.#counts,
-      CLASSES.filter((name) => counts[name]).map((name) => h("li", {}, classWord(name), ` ${counts[name]}`)),
+      known.filter((name) => counts[name]).map((name) => h("li", {}, classWord(name), ` ${counts[name]}`)),
       judged < ordinals.length && h("li", {}, `without a result ${ordinals.length - judged}`),
     );
     this.#listUncertain();

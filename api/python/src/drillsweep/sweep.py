@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 from drillsweep.design import Axis, Design, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
@@ -272,6 +272,24 @@ class Sweep:
             limits: Changes of the default limits, by column in the column's unit; None removes one.
         """
         return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
+
+    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
+        """Printable report of the sweep, two to four pages: a self-contained HTML document.
+
+        Args:
+            limits: Changes of the default limits, by column in the column's unit; None removes one.
+            units: Units of values and pictures.
+        """
+        return self._client.get_text(f"{self.path}/report", {"limits": limits_text(limits), "units": units})
+
+    def save_report(
+        self,
+        file: str | Path,
+        limits: Mapping[str, float | None] | None = None,
+        units: Literal["si", "field"] = "si",
+    ) -> Path:
+        """Writes the report to a file that ends in .html."""
+        return self._client.save(f"{self.path}/report", file, {"limits": limits_text(limits), "units": units})
 
     def verification(self) -> Table:
         """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).

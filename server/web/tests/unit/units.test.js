@@ -3,8 +3,7 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { near, QUANTITIES } from "./browser.js";
-import { FIELD_NAMES } from "../../data/field-names.js";
+import { near } from "./browser.js";
 import { choose } from "../../data/settings.js";
 import * as units from "../../data/units.js";
 
@@ -94,10 +93,6 @@ test("units of variants are those of the quantity, but biases are per cent", () 
 test("the meaning of a column ends with the column's name in scripts", () => {
   assert.match(units.meaning("torque_top"), /Column torque_top\.$/);
   assert.equal(units.meaning("unknown_name"), "");
-});
-
-test("names of the field are of columns that the vocabulary has", () => {
-  for (const name of Object.keys(FIELD_NAMES)) assert.ok(name in QUANTITIES, name);
 });
 
 test("paths of a scenario are those of the vocabulary, whatever their indices", () => {

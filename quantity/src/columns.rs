@@ -364,11 +364,11 @@ quantities! {
     /// Amplitude of the strongest line of the bit's rotation speed.
     BIT_LINE_AMPLITUDE: "bit_line_amplitude", "", ANGULAR_SPEED, "amplitude of the bit speed";
     /// Smallest torque of the uppermost element: the strongest that opposes clockwise rotation.
-    TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest torque top";
+    TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest surface torque";
     /// Largest torque of the uppermost element.
-    TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest torque top";
+    TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest surface torque";
     /// Dynamic torque: largest less smallest torque of the uppermost element.
-    TORQUE_TOP_RANGE: "torque_top_range", "", TORQUE, "dynamic torque top";
+    TORQUE_TOP_RANGE: "torque_top_range", "", TORQUE, "dynamic surface torque";
     /// Share of the string's length that whirls backward: moves backward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
     BACKWARD_WHIRL_FRACTION: "backward_whirl_fraction", "", RATIO, "share in backward whirl";
     /// Share of the string's length that whirls forward: moves forward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.

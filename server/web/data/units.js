@@ -33,18 +33,20 @@ const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 /**
  * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, depth?: string, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, key?: string, depth?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
-  if (registry[name]) return { entry: registry[name] };
+  if (registry[name]) return { entry: registry[name], key: name };
   const largest = LARGEST.exec(name)?.[1];
-  if (largest && registry[largest]) return { entry: registry[largest], variant: "largest" };
+  if (largest && registry[largest]) return { entry: registry[largest], key: largest, variant: "largest" };
   const variant = VARIANT.exec(name);
   const rest = variant ? variant[2] : name;
   const place = PLACE.exec(rest);
+  const key = rest.replace(PLACE, "");
   return {
-    entry: registry[rest.replace(PLACE, "")],
+    entry: registry[key],
+    key,
     variant: variant?.[1],
     depth: place?.[1]?.slice(0, -1).replace("_", "."),
     node: place?.[2],

@@ -14,6 +14,7 @@ import { LimitInputs } from "./limit-inputs.js";
 import { SweepMap } from "./map.js";
 import { OperatingPoint } from "./operating-point.js";
 import { undelayed } from "./part.js";
+import { RefineEdges } from "./refine-edges.js";
 
 /** Time without a change after which points are judged anew [ms]. */
 const REST_MS = 250;
@@ -87,6 +88,7 @@ class OperatingWindow {
       this.#counts,
       map.element,
       this.#point.element,
+      new RefineEdges(context, () => this.#changes).element,
       this.#uncertain,
       this.#links,
     );

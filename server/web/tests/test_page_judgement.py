@@ -175,3 +175,23 @@ def test_the_operating_point_names_the_nearest_computed_point(opened: Opens, nam
     page.mouse.move(box["x"] - 2000, box["y"] - 100, steps=4)
     page.mouse.up()
     until(page, lambda: "point.flow_rate=0.01&" in page.url + "&")
+
+
+def test_edges_between_classes_are_refined_a_round_at_a_time(opened: Opens, client: Client) -> None:
+    """The mean of the smallest and the largest value of a column is a limit that a sweep always crosses."""
+    axes = {"flow_rate": [0.01, 0.03], "mud_density": [1200.0, 1800.0]}
+    sweep = client.submit("paper-200m", set=SHORT, axes=axes, name="edges").wait(timeout=240.0)
+    column = "largest_equivalent_stress"
+    values = [float(value) for value in sweep.table()[column]]
+    limit = 0.5 * (min(values) + max(values))
+    page = opened(f"#/sweeps/{sweep.id}?view=window&limits={column}:{limit!r}")
+    drawn(page, "class over")
+    page.get_by_text("Refine the edges between classes").click()
+    page.get_by_label("Points at most").fill("2")
+    page.get_by_role("button", name="Add points").click()
+    expect(page.get_by_text(re.compile(r"longer than the resolution, the longest 100(\.0)? % of an axis"))).to_be_visible()
+    added = sweep.refresh().wait(timeout=240.0)
+    assert added.counts.total == 6
+    places = {(point.parameters["flow_rate"], point.parameters["mud_density"]) for point in added.points()}
+    middles = {(0.02, 1200.0), (0.02, 1800.0), (0.01, 1500.0), (0.03, 1500.0), (0.02, 1500.0)}
+    assert len(places & middles) == 2

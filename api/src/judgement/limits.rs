@@ -114,7 +114,7 @@ impl OperatingLimits {
     /// The default limits with changes from a text.
     ///
     /// # Errors
-    /// Those of [`LimitChanges::parse`].
+    /// Errors of [`LimitChanges::parse`].
     pub fn parse(text: &str) -> Result<Self, LimitError> {
         Ok(Self::default().with(&LimitChanges::parse(text)?))
     }

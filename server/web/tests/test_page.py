@@ -242,7 +242,8 @@ def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named
 def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=table&sort=flow_rate&order=down")
     first = page.locator(".rows tbody tr:not(.gap)").first
-    expect(first.locator("td").nth(3)).to_have_text("0.04")
+    # After the tick, number, state and class of a point.
+    expect(first.locator("td").nth(4)).to_have_text("0.04")
     page.get_by_role("searchbox").fill("mud_density>1500 flow_rate=0.01")
     expect(page.get_by_text("2 of 8 points")).to_be_visible()
     page.get_by_role("button", name=re.compile("Units")).click()
@@ -394,7 +395,9 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     sizes = [column for column in table.columns if column.startswith("bias_orbit_radius_rms_")]
     worst = 100 * max(abs(float(table[column][0])) for column in sizes)
     expect(error.locator("div", has_text="measured by verification")).to_contain_text(f"{float(f'{worst:.2g}'):g} %")
-    promised = verified.point(ordinal).summary["promised_error"]
+    summary = verified.point(ordinal).summary
+    assert summary is not None
+    promised = summary["promised_error"]
     expect(error.locator("div", has_text="promised")).to_contain_text(f"{100 * promised:g} %")
     expect(error).to_contain_text(
         f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise"

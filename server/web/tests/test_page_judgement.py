@@ -189,7 +189,9 @@ def test_edges_between_classes_are_refined_a_round_at_a_time(opened: Opens, clie
     page.get_by_text("Refine the edges between classes").click()
     page.get_by_label("Points at most").fill("2")
     page.get_by_role("button", name="Add points").click()
-    expect(page.get_by_text(re.compile(r"longer than the resolution, the longest 100(\.0)? % of an axis"))).to_be_visible()
+    expect(
+        page.get_by_text(re.compile(r"longer than the resolution, the longest 100(\.0)? % of an axis"))
+    ).to_be_visible()
     added = sweep.refresh().wait(timeout=240.0)
     assert added.counts.total == 6
     places = {(point.parameters["flow_rate"], point.parameters["mud_density"]) for point in added.points()}

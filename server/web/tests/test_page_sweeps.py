@@ -633,6 +633,14 @@ def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens,
 def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
     picture = parallel(page)
+    said = page.get_by_role("status", name="The point that is read")
+    # The keyboard reads the points that are kept, one after the other.
+    page.get_by_label("Point cursor").focus()
+    for key, expected in (("End", 8), ("ArrowLeft", 7), ("Home", 1)):
+        page.keyboard.press(key)
+        expect(said.get_by_role("link")).to_have_text(f"Point {expected}")
+    expect(picture.locator("polyline.mark")).to_have_count(1)
+    picture.scroll_into_view_if_needed()
     # Between the first two axes, on the line of one point, as far from its neighbours as these are apart.
     axes = picture.locator(".axis-brush")
     boxes = [axes.nth(number).bounding_box() for number in range(2)]
@@ -643,13 +651,6 @@ def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sw
         part = (value - table[name].min()) / (table[name].max() - table[name].min())
         heights.append((box["x"] + box["width"] / 2, box["y"] + (1 - part) * box["height"]))
     (left, top), (right, bottom) = heights
-    said = page.get_by_role("status", name="The point that is read")
-    # The keyboard reads the points that are kept, one after the other.
-    page.get_by_label("Point cursor").focus()
-    for key, expected in (("End", len(table)), ("ArrowLeft", len(table) - 1), ("Home", 1)):
-        page.keyboard.press(key)
-        expect(said.get_by_role("link")).to_have_text(f"Point {expected}")
-    expect(picture.locator("polyline.mark")).to_have_count(1)
     page.mouse.move(left + 0.3 * (right - left), top + 0.3 * (bottom - top) + 4, steps=5)
     expect(said).to_contain_text("flow rate 0.04 m³/s · mud density 1200 kg/m³")
     ordinal = int(str(said.get_by_role("link").text_content()).removeprefix("Point "))

@@ -394,7 +394,9 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     sizes = [column for column in table.columns if column.startswith("bias_orbit_radius_rms_")]
     worst = 100 * max(abs(float(table[column][0])) for column in sizes)
     expect(error.locator("div", has_text="measured by verification")).to_contain_text(f"{float(f'{worst:.2g}'):g} %")
-    promised = verified.point(ordinal).summary["promised_error"]
+    summary = verified.point(ordinal).summary
+    assert summary is not None
+    promised = summary["promised_error"]
     expect(error.locator("div", has_text="promised")).to_contain_text(f"{100 * promised:g} %")
     expect(error).to_contain_text(
         f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise"

@@ -281,7 +281,7 @@ export class ParallelPicture {
       const y = this.#heightOf(value, ends) + 4;
       group.append(svg("text", { x: left + BAR + 5, y, fill: text }, tickText(value)));
     }
-    const [across, middle] = [width - 8, (top + bottom) / 2];
+    const [across, middle] = [width - 14, (top + bottom) / 2];
     const turned = `rotate(90 ${across} ${middle})`;
     const name = { x: across, y: middle, transform: turned, "text-anchor": "middle", fill: text };
     group.append(svg("text", name, dimension.title));

@@ -64,6 +64,7 @@ class ParallelCoordinates {
     step: 1,
     value: "0",
     "aria-label": "Point cursor",
+    onfocus: () => this.#moveCursor(),
     oninput: () => this.#moveCursor(),
   });
   #fields = axisControls(

@@ -6,7 +6,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// Content security policy of a report: its own style by its hash, and nothing else.
 pub const POLICY: &str =
-    "default-src 'none'; style-src 'sha256-tV0v4b7VFFch5s/3FYfmE5mDey4lxJfNVGAvhJk2fUU='";
+    "default-src 'none'; style-src 'sha256-QBQCqeFPt9Cc3Bf31HJhEN7WIznifK6Ia6eZK3Nc9u4='";
 
 /// A self-contained HTML document without scripts; a saved file keeps to [`POLICY`], too.
 pub(crate) fn page(title: &str, body: &Markup) -> String {

@@ -40,7 +40,7 @@ export class OperatingPoint {
   /** Number of the point whose pictures are shown. */
   #shown = 0;
   #sliders = h("div", { class: "ranges sliders" });
-  #nearest = h("p", { role: "status" });
+  #nearest = h("p", { class: "nearest", role: "status" });
   #pictures = h("div", {});
   #cross = h("button", {
     type: "button",

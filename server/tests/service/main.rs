@@ -15,11 +15,8 @@ mod limits;
 mod openapi;
 mod page;
 mod pictures;
-<<<<<<< HEAD
 mod refinement;
-=======
 mod report;
->>>>>>> w-report
 mod results;
 mod schema;
 mod shutdown;

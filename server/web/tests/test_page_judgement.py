@@ -168,6 +168,7 @@ def test_the_operating_point_names_the_nearest_computed_point(opened: Opens, nam
     chosen.get_by_role("slider", name="rotation speed").fill("90")
     expect(held).to_have_value("120")
     expect(chosen.get_by_role("img", name="Orbit")).to_be_visible()
+    cross.scroll_into_view_if_needed()
     box = cross.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)

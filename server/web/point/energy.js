@@ -130,6 +130,9 @@ function drawBars(place, columns, signal) {
   const yaxis = {
     title: "",
     automargin: true,
+    // Every name, however low the picture is.
+    tickmode: "linear",
+    dtick: 1,
     categoryorder: "array",
     categoryarray: named.map(({ category }) => category).toReversed(),
   };

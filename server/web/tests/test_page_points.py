@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from itertools import pairwise
+from itertools import combinations, pairwise
 from pathlib import Path
 from urllib.parse import parse_qs
 
@@ -226,6 +226,7 @@ def test_profiles_do_not_lie_over_each_other_on_a_phone(opened: Opens, sweep: Sw
 def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles&profiles=effective_tension,normal_force")
     picture = drawn(page, "Profiles over measured depth")
+    picture.locator(".nsewdrag").first.scroll_into_view_if_needed()
     box = picture.locator(".nsewdrag").first.bounding_box()
     assert box is not None
     labels = picture.locator(".hoverlayer .hovertext")
@@ -290,7 +291,7 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
     until(page, lambda: float(depths[int(cursor.input_value())]) == pytest.approx(100.0, abs=10.0))
 
 
-def test_numbers_beside_bars_of_energy_leave_the_names_free(opened: Opens, sweep: Sweep) -> None:
+def test_names_of_bars_of_energy_have_their_numbers_and_room(opened: Opens, sweep: Sweep) -> None:
     page = opened("#/nowhere", viewport={"width": 600, "height": 800})
 
     def lost(route: Route) -> None:
@@ -303,15 +304,17 @@ def test_numbers_beside_bars_of_energy_leave_the_names_free(opened: Opens, sweep
     page.route("**/energy?**", lost)
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=energy"))
     picture = drawn(page, "Energy by account")
-    read = """place => {
-        const boxes = (name) => [...place.querySelectorAll(name)].map((element) => element.getBoundingClientRect());
-        const [names, numbers] = [boxes('.ytick text'), boxes('.bartext')];
-        return [numbers.length, names.some((name) => numbers.some((one) =>
-            one.left < name.right && name.left < one.right && one.top < name.bottom && name.top < one.bottom))];
-    }"""
-    count, is_covered = picture.evaluate(read)
-    assert count > 5
-    assert not is_covered
+    read = """place => [...place.querySelectorAll('.ytick text')].map((name) => {
+        const { left, right, top, bottom } = name.getBoundingClientRect();
+        return { text: name.textContent, left, right, top, bottom };
+    })"""
+    names = picture.evaluate(read)
+    assert len(names) > 5
+    for one, other in combinations(names, 2):
+        assert one["bottom"] <= other["top"] + 1 or other["bottom"] <= one["top"] + 1, (one, other)
+    # Each name is followed by its energy, all of which is seen.
+    left = picture.evaluate("place => place.getBoundingClientRect().left")
+    assert all(re.search(r", [\d.\s]+ .?J$", name["text"]) and name["left"] >= left for name in names), names
 
 
 def test_snapshots_are_downloaded_as_csv(opened: Opens, recorded: Sweep) -> None:

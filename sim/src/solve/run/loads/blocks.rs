@@ -7,16 +7,19 @@ use drillsweep_scenario::TimeWindow;
 use serde::{Deserialize, Serialize};
 
 use super::elements::ElementSums;
-use super::fatigue::{FatigueSite, SiteCycles};
+use super::fatigue::{FatigueSite, POINT_BYTES, SiteCycles};
 use super::nodes::NodeSums;
 use crate::math::linalg::{Four, Lane};
 
 /// Number of blocks kept: those of the longest settled window, and one that has begun at either end.
-pub(super) const MOST_BLOCKS: usize = 10;
+const MOST_BLOCKS: usize = 10;
 
 /// Bytes of a node and an element in all blocks of a settled window.
 pub const LOAD_BYTES: u64 =
     (MOST_BLOCKS * (size_of::<NodeSums>() + size_of::<ElementSums>()) / Four::LANES) as u64;
+
+/// Bytes of the cycles of an element with a grade, at most: those of the block that is open, and damages of all blocks.
+pub const CYCLE_BYTES: u64 = (POINT_BYTES + MOST_BLOCKS * size_of::<SiteCycles>()) as u64;
 
 /// Part of a block by which it may reach beyond the window: rounding of times.
 const ROUNDING: f64 = 1e-6;

@@ -325,7 +325,7 @@ impl<const D: usize> ElementGroup<D> {
         [at_end(0).max(at_end(1)), ends.value(&self.tension), ends.value(&self.torque)]
     }
 
-    /// Bending moment in the middle of the elements \[N m\] along two axes that turn with the pipe; `twist` is the place of theta_z in a node's values.
+    /// Bending moment in the middle of the elements \[N m\] by the curvature along two axes that turn with the pipe; `twist` is the place of theta_z in a node's values.
     fn turning_moment(&self, group: usize, twist: Option<usize>, moment: &Moment<'_, D>) -> [Four; 2] {
         let ends = Ends::new(group, moment);
         let half = Four::splat(0.5);
@@ -335,7 +335,8 @@ impl<const D: usize> ElementGroup<D> {
             let [upper, lower] = [0, 1].map(|end: usize| ends.value(&self.bending[plane][end]));
             (upper + lower) * half
         });
-        [x.mul_add(cos, y * sin), y.mul_add(cos, -(x * sin))]
+        // The rows are those of E I u'' and -E I v''.
+        [x.mul_add(cos, -(y * sin)), -(x.mul_add(sin, y * cos))]
     }
 
     /// Square of the equivalent stress by von Mises \[Pa2\], the larger of both diameters. With the effective tension, axial stress less the mean of

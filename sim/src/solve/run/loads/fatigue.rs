@@ -7,7 +7,6 @@
 use drillsweep_scenario::Grade;
 use serde::{Deserialize, Serialize};
 
-use super::blocks::MOST_BLOCKS;
 use crate::solve::model::{Model, StringElement};
 use crate::solve::statics::Equilibrium;
 
@@ -38,9 +37,8 @@ pub(super) struct FatigueSite {
     strength: f64,
 }
 
-/// Bytes of the cycles of an element with a grade, at most: in the block that is open, and in all blocks.
-pub const CYCLE_BYTES: u64 =
-    (2 * PAIRS * MOST_POINTS * size_of::<f64>() + MOST_BLOCKS * size_of::<SiteCycles>()) as u64;
+/// Bytes of the turning points of an element with a grade, at most.
+pub(super) const POINT_BYTES: usize = 2 * PAIRS * MOST_POINTS * size_of::<f64>();
 
 /// Cycles of a site's stresses within a block.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -83,7 +81,7 @@ impl FatigueSite {
         }
     }
 
-    /// Takes in a tension \[N\] and a bending moment \[N m\] along two axes that turn with the pipe.
+    /// Takes in a tension \[N\] and a bending moment \[N m\] by the curvature along two axes that turn with the pipe.
     pub(super) fn observe(&self, tension: f64, [x, y]: [f64; 2], cycles: &mut SiteCycles) {
         let axial = tension.mul_add(self.axial, self.pressure);
         let diagonal = std::f64::consts::FRAC_1_SQRT_2;

@@ -24,9 +24,8 @@ use elements::{Elements, element_loads};
 pub(super) use moment::Moment;
 use nodes::{Nodes, node_loads};
 
-pub use blocks::LOAD_BYTES;
+pub use blocks::{CYCLE_BYTES, LOAD_BYTES};
 pub use elements::ElementLoads;
-pub use fatigue::CYCLE_BYTES;
 pub use nodes::{NodeLoads, SHOCKS_G};
 pub use statistics::{Peak, RmsAndPeak, Span};
 

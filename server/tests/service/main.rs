@@ -11,6 +11,7 @@ mod events;
 mod files;
 mod follow;
 mod large;
+mod log;
 mod openapi;
 mod page;
 mod pictures;

@@ -97,7 +97,7 @@ def views(sweep: str) -> list[View]:
         told("table of points", f"{of_sweep}table", ".rows tbody tr"),
         pictured("profiles of a point", f"{of_point}profiles"),
         pictured("its history, orbit and spectrum", f"{of_point}motion", ".plot[aria-label^='Orbit of node']"),
-        told("its well", f"{of_point}well", ".js-plotly-plot canvas"),
+        told("its well", f"{of_point}well", "canvas.scene[data-drawn]"),
         pictured("new sweep", "#/new"),
     ]
 

@@ -111,9 +111,9 @@ def main() -> None:
                 page.wait_for_load_state("networkidle")
                 unfold(page, name)
                 page.wait_for_load_state("networkidle")
-                for picture in page.locator(".plot:visible").all():
+                for picture in page.locator(".plot:visible:not(.parallel)").all():
                     picture.locator(".main-svg").first.wait_for()
-                # WebGL draws a frame after the axes.
+                # What the page paints follows the axes by a frame.
                 page.wait_for_timeout(500)
                 height = TALLER.get(name, LARGEST_HEIGHT)
                 save(page.screenshot(full_page=True), arguments.folder / f"{name}-{theme}.webp", height)

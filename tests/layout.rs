@@ -28,6 +28,16 @@ const ARROWS: &[(&str, &[&str])] = &[
         "drillsweep-chart",
         &["drillsweep-api", "drillsweep-quantity", "drillsweep-scenario", "drillsweep-table"],
     ),
+    (
+        "drillsweep-report",
+        &[
+            "drillsweep-api",
+            "drillsweep-chart",
+            "drillsweep-quantity",
+            "drillsweep-scenario",
+            "drillsweep-table",
+        ],
+    ),
     ("drillsweep-store", &[]),
     (
         "drillsweep-server",
@@ -35,6 +45,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "drillsweep-api",
             "drillsweep-chart",
             "drillsweep-quantity",
+            "drillsweep-report",
             "drillsweep-store",
             "drillsweep-table",
         ],
@@ -80,6 +91,7 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("rustfft", &["drillsweep-sim"]),
     ("skrifa", &["drillsweep-chart"]),
     ("notosans", &["drillsweep-chart"]),
+    ("maud", &["drillsweep-report"]),
 ];
 
 fn metadata() -> Metadata {
@@ -193,8 +205,10 @@ fn arrows_down(folder: &str, layers: &[&str]) -> usize {
 }
 
 /// Folders of the crates.
-const CRATES: &[&str] =
-    &["api", "chart", "cli", "quantity", "scenario", "server", "sim", "store", "study", "table", "worker"];
+const CRATES: &[&str] = &[
+    "api", "chart", "cli", "quantity", "report", "scenario", "server", "sim", "store", "study", "table",
+    "worker",
+];
 
 #[test]
 fn no_module_imports_itself_by_way_of_others() {

@@ -14,7 +14,21 @@ import pytest
 from service import REPOSITORY
 
 OPENING = re.compile(r"(What|Who|Whose|That of|Those of|So many|By whether)\b")
-CLEAN = ("api", "chart", "cli", "quantity", "scenario", "server", "sim", "store", "study", "table", "tests", "worker")
+CLEAN = (
+    "api",
+    "chart",
+    "cli",
+    "quantity",
+    "report",
+    "scenario",
+    "server",
+    "sim",
+    "store",
+    "study",
+    "table",
+    "tests",
+    "worker",
+)
 """Folders whose doc comments in Rust open with no adverb or conjunction either."""
 OPENING_OF_CLEAN = re.compile(r"(Where|When|How|Which|Whether|Why)\b")
 RETIRED = {"falling friction": "velocity-weakening friction"}

@@ -130,6 +130,22 @@ impl Scale {
             Scale::Log => from * libm::pow(to / from, part / whole),
         }
     }
+
+    /// The part of the way from one end to the other at which `value` is.
+    pub(crate) fn part(self, from: f64, to: f64, value: f64) -> f64 {
+        match self {
+            Scale::Linear => (value - from) / (to - from),
+            Scale::Log => libm::log(value / from) / libm::log(to / from),
+        }
+    }
+
+    /// The value in the middle of two.
+    pub(crate) fn middle(self, a: f64, b: f64) -> f64 {
+        match self {
+            Scale::Linear => a + 0.5 * (b - a),
+            Scale::Log => a * (b / a).sqrt(),
+        }
+    }
 }
 
 /// The members of an axis as they may come in. An untagged enum would only say that nothing matched; this

@@ -23,6 +23,13 @@ pub struct ListedPoints {
 }
 
 impl ListedPoints {
+    /// Points with a value for each of the names.
+    pub(crate) fn new(names: Vec<AxisName>, points: impl IntoIterator<Item = Vec<f64>>) -> Self {
+        let mut number = 0;
+        let values = points.into_iter().inspect(|_| number += 1).flatten().collect();
+        Self { names, values, number, uneven: Vec::new() }
+    }
+
     /// The number of points.
     pub fn len(&self) -> usize {
         self.number

@@ -13,6 +13,7 @@ use crate::axis::{Axis, AxisName};
 use crate::bounded;
 use crate::listed::ListedPoints;
 use crate::problem::{FieldProblem, ProblemDetails};
+use crate::refine::Refinement;
 
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///
@@ -165,7 +166,7 @@ impl From<RunRequest> for SweepRequest {
     }
 }
 
-/// Points to add to a sweep: of its scenario, over its own parameters, by any design.
+/// Points to add to a sweep: of its scenario, over its own parameters, by any design, or by a refinement.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AppendRequest {
@@ -194,15 +195,36 @@ pub struct AppendRequest {
     /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
+    /// Points between neighbours whose classes or values differ, in place of a design.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refine: Option<Refinement>,
 }
 
 impl AppendRequest {
+    /// The refinement; absent if a design makes the points.
+    ///
+    /// # Errors
+    /// There are both.
+    pub fn refinement(&self) -> Result<Option<&Refinement>, Box<ProblemDetails>> {
+        let Some(refinement) = &self.refine else { return Ok(None) };
+        if (Self { refine: None, ..self.clone() }) != Self::default() {
+            let error = FieldProblem {
+                pointer: Some("/refine".to_owned()),
+                parameter: None,
+                got: None,
+                detail: "excludes `design`, `axes`, `points`, `samples`, `seed` and `skip`".to_owned(),
+            };
+            return Err(Box::new(ProblemDetails::invalid_request(vec![error])));
+        }
+        Ok(Some(refinement))
+    }
+
     /// The request for the added points alone, as a sweep of their own, next to the request `original` of the sweep.
     ///
     /// # Errors
     /// The parameters are not those of the sweep.
     pub fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
-        let AppendRequest { design, axes, points, samples, seed, skip } = self;
+        let AppendRequest { design, axes, points, samples, seed, skip, refine: _ } = self;
         // The sample is drawn from the points that the sweep lacks, once they are known.
         let request =
             SweepRequest { design, axes, points, samples, seed, skip, verify: None, ..original.clone() };

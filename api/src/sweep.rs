@@ -5,6 +5,7 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
 use crate::problem::FieldProblem;
+use crate::refine::RefinementState;
 use crate::request::{AppendRequest, SweepRequest};
 use crate::view::verification::WorstBias;
 
@@ -54,6 +55,9 @@ pub struct Sweep {
     /// Warnings about valid requests that are probably not meant; in the answer to a submission only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<FieldProblem>,
+    /// State of the refinement that was requested; in the answer to a refinement only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refinement: Option<RefinementState>,
     /// Request of the sweep; left out of lists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,

@@ -1,7 +1,7 @@
 //! The picture of motion over time.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Name, Quantity, Variant, units};
+use drillsweep_quantity::{Name, Quantity, UnitSystem, Variant, units};
 use drillsweep_table::{Column, Table};
 
 use crate::error::ChartError;
@@ -49,13 +49,13 @@ pub fn history(
     title: &str,
 ) -> Result<Drawing, ChartError> {
     let names = lines_of_history(table, fields);
-    let shown = Shown::of(table, &names)?;
+    let shown = Shown::of(table, &names, UnitSystem::Si)?;
     let y_label = shown.label(places);
     let rotation = match fields {
         Some(_) => Rotation::default(),
         None => Rotation::of(table, places, bit),
     };
-    let own = node_of(table);
+    let own = node_of(table, UnitSystem::Si);
     let subtitle = if rotation.panels.is_empty() && own.is_empty() { &rotation.remark } else { &own };
     let line_name = |name: &str| at_place(name, places);
     let mut drawing = over_time(table, shown, &y_label, &line_name, [title, subtitle])?;
@@ -63,7 +63,7 @@ pub fn history(
         // Drillers read rotation speeds in rpm.
         let unit = match quantity.units {
             Some(units) if *units == units::ANGULAR_SPEED => Some(units.field),
-            _ => shown_in(column),
+            _ => shown_in(column, UnitSystem::Si),
         };
         let shown = Shown::within(table, &[column], unit)?;
         let y_label = match unit {
@@ -74,6 +74,16 @@ pub fn history(
         drawing = drawing.above(over_time(table, shown, &y_label, &|_| line.clone(), ["", remark])?);
     }
     Ok(drawing)
+}
+
+/// Rotation speed of a node over time \[rpm\], as drillers read it in any system.
+///
+/// # Errors
+/// A problem that names the columns there are, if `column` is none of them.
+pub fn rotation(table: &Table, column: &str, title: &str) -> Result<Drawing, ChartError> {
+    let shown = Shown::within(table, &[column], Some(units::ANGULAR_SPEED.field))?;
+    let y_label = shown.label(&[]);
+    over_time(table, shown, &y_label, &|_| String::new(), [title, ""])
 }
 
 /// Quantities shown below the lateral motion of a string that twists.
@@ -151,7 +161,7 @@ fn over_time(
     let plot = LinePlot {
         title: title.to_owned(),
         subtitle: subtitle.to_owned(),
-        x_label: with_unit(TIME.name),
+        x_label: with_unit(TIME.name, UnitSystem::Si),
         y_label: y_label.to_owned(),
         lines: shown.columns.into_iter().map(line).collect(),
         ..LinePlot::default()

@@ -1,7 +1,7 @@
 //! Pictures of results, as SVG and PNG.
 //!
 //! [`profile`], [`history`], [`orbit`], [`spectrum`] and [`sweep`] take the very table that is served as JSON or CSV and choose
-//! the shown columns, their units and names; [`work_precision`] does so for a cost study. The result is laid out
+//! the shown columns, their units and names; [`work_precision`] does so for a cost study. [`string()`] draws the string of a scenario. The result is laid out
 //! on a page and written by [`picture`], which knows nothing of tables.
 
 mod cost;
@@ -13,18 +13,20 @@ mod place;
 mod profile;
 mod shown;
 mod spectrum;
+mod string;
 mod sweep;
 mod words;
 
 pub use cost::work_precision;
 pub use error::ChartError;
-pub use history::{Bit, history, shown_of_history};
+pub use history::{Bit, history, rotation, shown_of_history};
 pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};
 pub use place::Place;
 pub use profile::profile;
 pub use shown::caption;
 pub use spectrum::spectrum;
+pub use string::string;
 pub use sweep::{SweepView, sweep};
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.

@@ -1,12 +1,12 @@
 //! The picture of a node's path across its hole.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::units;
+use drillsweep_quantity::{UnitSystem, units};
 use drillsweep_table::Table;
 
 use crate::error::ChartError;
 use crate::picture::{Drawing, OrbitPlot};
-use crate::shown::{node_of, numbers, width};
+use crate::shown::{node_of, numbers};
 
 /// Position and direction of the hole at a node, for the picture of its orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,7 +22,14 @@ pub struct Hole {
 ///
 /// # Errors
 /// The table is not an orbit.
-pub fn orbit(table: &Table, hole: &Hole, title: &str, zoom: Option<bool>) -> Result<Drawing, ChartError> {
+pub fn orbit(
+    table: &Table,
+    hole: &Hole,
+    title: &str,
+    zoom: Option<bool>,
+    system: UnitSystem,
+) -> Result<Drawing, ChartError> {
+    let unit = units::WIDTH.of(system);
     let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {
         (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
@@ -30,11 +37,11 @@ pub fn orbit(table: &Table, hole: &Hole, title: &str, zoom: Option<bool>) -> Res
     };
     let plot = OrbitPlot {
         title: title.to_owned(),
-        subtitle: format!("{}{window}; the mark is the end", node_of(table)),
-        path: u.iter().zip(v).map(|(u, v)| [width(*u), width(v)]).collect(),
-        wall: hole.clearance.map(width),
+        subtitle: format!("{}{window}; the mark is the end", node_of(table, system)),
+        path: u.iter().zip(v).map(|(u, v)| [unit.of(*u), unit.of(v)]).collect(),
+        wall: hole.clearance.map(|clearance| unit.of(clearance)),
         low_side: hole.low_side,
-        unit: units::WIDTH.shown.symbol.to_owned(),
+        unit: unit.symbol.to_owned(),
         zoom,
     };
     Ok(plot.drawing())

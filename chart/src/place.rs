@@ -88,9 +88,9 @@ mod tests {
             ("u_10", None, "u at 3 412 m MD, lateral, along e1"),
             ("w_10", Some(0.0), "w at 3 412 m MD, axial, downhole"),
             ("u_11", Some(0.0), "u, node 11"),
-            ("spread_orbit_radius_rms_10", Some(0.0), "spread of orbit radius rms at 3 412 m MD"),
-            ("line_amplitude_10_w2", None, "line amplitude at 3 412 m MD, window 2"),
-            ("line_amplitude_57_7m_w2", None, "line amplitude at 57.7 m MD, window 2"),
+            ("spread_orbit_radius_rms_10", Some(0.0), "spread of lateral vibration at 3 412 m MD"),
+            ("line_amplitude_10_w2", None, "amplitude of the highest line at 3 412 m MD, window 2"),
+            ("line_amplitude_57_7m_w2", None, "amplitude of the highest line at 57.7 m MD, window 2"),
         ] {
             assert_eq!(label(name, low_side), words);
         }

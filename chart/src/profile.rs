@@ -1,18 +1,25 @@
 //! The picture of values along the string.
 
+use drillsweep_quantity::UnitSystem;
 use drillsweep_quantity::columns::*;
 use drillsweep_table::Table;
 
 use crate::error::ChartError;
 use crate::picture::{Drawing, Line, LinePlot, VerticalAxis};
-use crate::shown::{Shown, numbers, with_unit};
+use crate::shown::{Shown, axis, with_unit};
 use crate::words::words;
 
-/// Values along the string, depth downwards: C_f, or the first of the `fields` that are given.
+/// Values along the string, depth downwards: C_f, or the `fields` that are given. A value of an element holds for its whole length, one of a
+/// node for its depth.
 ///
 /// # Errors
 /// A problem that names the columns there are, if a field is none of them.
-pub fn profile(table: &Table, fields: Option<&[String]>, title: &str) -> Result<Drawing, ChartError> {
+pub fn profile(
+    table: &Table,
+    fields: Option<&[String]>,
+    title: &str,
+    system: UnitSystem,
+) -> Result<Drawing, ChartError> {
     let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
         FRICTION_COEFFICIENT.name
     } else {
@@ -22,23 +29,27 @@ pub fn profile(table: &Table, fields: Option<&[String]>, title: &str) -> Result<
         Some(fields) => fields.iter().map(String::as_str).collect(),
         None => vec![fallback],
     };
-    let (top, bottom) =
-        (numbers(table, MEASURED_DEPTH_TOP.name)?, numbers(table, MEASURED_DEPTH_BOTTOM.name)?);
-    let shown = Shown::of(table, &names)?;
+    let is_of_nodes = table.columns.contains_key(MEASURED_DEPTH.name);
+    let ends: &[&str] = if is_of_nodes {
+        &[MEASURED_DEPTH.name]
+    } else {
+        &[MEASURED_DEPTH_TOP.name, MEASURED_DEPTH_BOTTOM.name]
+    };
+    let depths = ends.iter().map(|name| axis(table, name, system)).collect::<Result<Vec<_>, _>>()?;
+    let shown = Shown::of(table, &names, system)?;
     let line = |(name, values): (&str, Vec<f64>)| Line {
         name: words(name),
-        // A value holds for its whole element.
         points: values
             .iter()
             .enumerate()
-            .flat_map(|(e, value)| [[*value, top[e]], [*value, bottom[e]]])
+            .flat_map(|(row, value)| depths.iter().map(move |depth| [*value, depth[row]]))
             .collect(),
         is_marked: false,
     };
     let plot = LinePlot {
         title: title.to_owned(),
         x_label: shown.label(&[]),
-        y_label: with_unit(MEASURED_DEPTH.name),
+        y_label: with_unit(MEASURED_DEPTH.name, system),
         lines: shown.columns.into_iter().map(line).collect(),
         vertical: VerticalAxis::Depth,
         ..LinePlot::default()
@@ -66,10 +77,15 @@ mod tests {
             .with("regime", Column::Text(vec![None, None]));
         let svg = profile(&table, None, "C_f").unwrap().svg();
         assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
-        assert!(profile(&table, Some(&["torque".to_owned()]), "").unwrap().svg().contains("torque [kN m]"));
+        assert!(
+            profile(&table, Some(&["torque".to_owned()]), "", UnitSystem::Si)
+                .unwrap()
+                .svg()
+                .contains("torque [kN m]")
+        );
         let refused = |fields: &[&str]| {
             let fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
-            profile(&table, Some(&fields), "").unwrap_err()
+            profile(&table, Some(&fields), "", UnitSystem::Si).unwrap_err()
         };
         let name = "friction_coefficient".to_owned();
         assert_eq!(refused(&["torque", "friction_coefficient"]), ChartError::OtherUnit { name });

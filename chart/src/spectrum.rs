@@ -1,7 +1,7 @@
 //! The picture of a full spectrum.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::units;
+use drillsweep_quantity::{UnitSystem, units};
 use drillsweep_table::Table;
 use serde_json::Value;
 
@@ -56,10 +56,10 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
         title: title.to_owned(),
         subtitle: format!(
             "{}, {} samples, {window} window, without the mean; + forward, − backward whirl",
-            node_of(table),
+            node_of(table, UnitSystem::Si),
             attribute("samples").unwrap_or(0.0)
         ),
-        x_label: with_unit(FREQUENCY.name),
+        x_label: with_unit(FREQUENCY.name, UnitSystem::Si),
         y_label: format!("{} [{}]", words(AMPLITUDE.name), units::WIDTH.shown.symbol),
         lines: vec![Line { points: points.collect(), ..Line::default() }],
         vertical: VerticalAxis::FromZero,

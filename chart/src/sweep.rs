@@ -2,11 +2,12 @@
 
 use drillsweep_api::view::verification::{Findings, is_bias_column};
 use drillsweep_quantity::columns::*;
+use drillsweep_quantity::{CLASSES, Class, UnitSystem};
 use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 
 use crate::error::ChartError;
-use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap};
+use crate::picture::{Drawing, Line, LinePlot, MapPoint, Spacing, SweepMap, Word};
 use crate::place::{Place, at_place};
 use crate::shown::{Shown, amount, axis, numbers, with_unit};
 use crate::words::words;
@@ -23,12 +24,14 @@ pub struct SweepView {
     pub slice: Vec<(String, f64)>,
     /// Positions of the nodes of the columns, if they are the same in the whole sweep.
     pub places: Vec<Place>,
+    /// Units of axes and values.
+    pub units: UnitSystem,
 }
 
 /// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
 /// over two a map. Over more, a map over the first two that the view's slice does not hold; further ones are held at the first value that
 /// they have, and the picture says so. Those of a design that is no grid cannot be held: all points are shown, which it says as
-/// well. Texts have a colour each, the most frequent eight or, with others, seven. Points that are verified are marked on a map, and
+/// well. Classes have their colours, the most severe first; other texts have a colour each, the most frequent eight or, with others, seven. Points that are verified are marked on a map, and
 /// the notes stand below the title; points that have not settled have crosses.
 ///
 /// # Errors
@@ -47,10 +50,10 @@ pub fn sweep(
         let columns = numeric(table).filter(|name| !parameters.contains(*name)).map(str::to_owned);
         return Err(ChartError::NoField { columns: columns.collect() });
     };
-    let Slice { rows, axes, notes } = Slice::of(table, parameters, &view.slice)?;
+    let Slice { rows, axes, notes, .. } = Slice::of(table, parameters, view)?;
     let x = axes.first().copied().unwrap_or(ORDINAL.name);
     let pick = |values: Vec<f64>| -> Vec<f64> { rows.iter().map(|row| values[*row]).collect() };
-    let xs = pick(axis(table, x)?);
+    let xs = pick(axis(table, x, view.units)?);
     let texts = match table.columns.get(first) {
         Some(Column::Text(texts)) => Some(texts),
         _ => None,
@@ -61,7 +64,7 @@ pub fn sweep(
     let unsettled = (count > 0).then(|| format!("crosses: {count} of {} points NOT SETTLED", rows.len()));
     if axes.len() < 2 && texts.is_none() {
         let names: Vec<&str> = fields.iter().map(String::as_str).collect();
-        let shown = Shown::of(table, &names)?;
+        let shown = Shown::of(table, &names, view.units)?;
         let y_label = shown.label(&view.places);
         let line = |(name, values): (&str, Vec<f64>)| {
             let mut points: Vec<[f64; 2]> =
@@ -76,7 +79,7 @@ pub fn sweep(
         let plot = LinePlot {
             title: title.to_owned(),
             subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
-            x_label: with_unit(x),
+            x_label: with_unit(x, view.units),
             y_label,
             crosses: lines.iter().flat_map(|line| &line.points).filter(is_at).copied().collect(),
             lines,
@@ -85,17 +88,17 @@ pub fn sweep(
         return Ok(plot.drawing());
     }
     let ys = match axes.get(1) {
-        Some(y) => pick(axis(table, y)?),
+        Some(y) => pick(axis(table, y, view.units)?),
         None => vec![0.0; rows.len()],
     };
     let (kinds, values, value_label) = match texts {
         Some(texts) => {
             let texts: Vec<Option<&str>> = rows.iter().map(|row| texts[*row].as_deref()).collect();
-            let (kinds, values) = kinds(&texts);
+            let (kinds, values) = if first == CLASS.name { classes(&texts) } else { kinds(&texts) };
             (kinds, values, at_place(first, &view.places))
         }
         None => {
-            let mut shown = Shown::of(table, &[first.as_str()])?;
+            let mut shown = Shown::of(table, &[first.as_str()], view.units)?;
             let value_label = shown.label(&view.places);
             let (_, values) = shown.columns.swap_remove(0);
             (Vec::new(), pick(values), value_label)
@@ -114,8 +117,8 @@ pub fn sweep(
     let plot = SweepMap {
         title: title.to_owned(),
         subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
-        x_label: with_unit(x),
-        y_label: axes.get(1).map(|y| with_unit(y)).unwrap_or_default(),
+        x_label: with_unit(x, view.units),
+        y_label: axes.get(1).map(|y| with_unit(y, view.units)).unwrap_or_default(),
         value_label,
         points: points.collect(),
         words: kinds,
@@ -132,15 +135,18 @@ struct Slice<'t> {
     axes: Vec<&'t str>,
     /// Its position in words.
     notes: Vec<String>,
+    /// Units of the words.
+    units: UnitSystem,
 }
 
 impl<'t> Slice<'t> {
     fn of(
         table: &Table,
         parameters: &'t IndexSet<String>,
-        held: &[(String, f64)],
+        SweepView { slice: held, units, .. }: &SweepView,
     ) -> Result<Self, ChartError> {
-        let mut slice = Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new() };
+        let mut slice =
+            Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new(), units: *units };
         for (name, value) in held {
             if !parameters.contains(name) {
                 let parameters = parameters.iter().cloned().collect();
@@ -162,7 +168,8 @@ impl<'t> Slice<'t> {
                 slice.hold(name, &values, values[slice.rows[0]])?;
             } else {
                 let (low, high) = (differing[0], differing[differing.len() - 1]);
-                let range = format!("{} to {}", amount(name, low), amount(name, high));
+                let range =
+                    format!("{} to {}", amount(name, low, slice.units), amount(name, high, slice.units));
                 slice.notes.push(format!("points at any {}, {range}", words(name)));
             }
         }
@@ -194,7 +201,7 @@ impl<'t> Slice<'t> {
         self.notes.push(format!(
             "slice at {} {} (one of {})",
             words(name),
-            amount(name, value),
+            amount(name, value, self.units),
             values.len()
         ));
         self.rows.retain(|row| is_it(column[*row]));
@@ -202,8 +209,20 @@ impl<'t> Slice<'t> {
     }
 }
 
+/// The classes that occur, the most severe first, and for each row the index of its own.
+fn classes(texts: &[Option<&str>]) -> (Vec<Word>, Vec<f64>) {
+    let occurring: Vec<&Class> = CLASSES.iter().filter(|class| texts.contains(&Some(class.name))).collect();
+    let index = |text: &Option<&str>| {
+        let index = occurring.iter().position(|class| Some(class.name) == *text);
+        index.map_or(f64::NAN, |index| index as f64)
+    };
+    let values = texts.iter().map(index).collect();
+    let word = |class: &Class| Word { text: class.words(), colour: class.colour };
+    (occurring.into_iter().map(word).collect(), values)
+}
+
 /// The texts in order of the alphabet, and for each row the index of its own; rare ones are others if a map has not enough colours.
-fn kinds(texts: &[Option<&str>]) -> (Vec<String>, Vec<f64>) {
+fn kinds(texts: &[Option<&str>]) -> (Vec<Word>, Vec<f64>) {
     const OTHER: &str = "other";
     let mut counts: IndexMap<&str, usize> = IndexMap::new();
     texts.iter().flatten().for_each(|text| *counts.entry(text).or_default() += 1);
@@ -219,7 +238,8 @@ fn kinds(texts: &[Option<&str>]) -> (Vec<String>, Vec<f64>) {
     };
     let values = texts.iter().map(index).collect();
     let other = has_others.then(|| OTHER.to_owned());
-    (counts.keys().map(|text| (*text).to_owned()).chain(other).collect(), values)
+    let words = counts.keys().map(|text| (*text).to_owned()).chain(other).enumerate();
+    (words.map(|(number, text)| Word::numbered(number, text)).collect(), values)
 }
 
 /// Marks rows of verified points in a sweep's table: those with the bias of any statistic.
@@ -290,7 +310,7 @@ mod tests {
         )
         .unwrap()
         .svg();
-        assert!(map.contains(r#"class="map""#) && map.contains("orbit radius rms, node 49 [mm]"));
+        assert!(map.contains(r#"class="map""#) && map.contains("lateral vibration, node 49 [mm]"));
         assert!(map.contains("flow rate [m3/s]") && map.contains("mud density [kg/m3]"));
         let lines = sweep(&table(&[1200.0; 4]), &parameters, Some(&fields), &none, "", &SweepView::default())
             .unwrap()
@@ -391,6 +411,23 @@ mod tests {
     }
 
     #[test]
+    fn classes_are_in_the_order_and_colours_of_the_vocabulary() {
+        let parameters: IndexSet<String> = ["flow_rate".to_owned()].into();
+        let texts = ["quiet", "stick_slip", "failed", "quiet"].map(|text| Some(text.to_owned()));
+        let table = Table::default()
+            .with("flow_rate", column(&[0.01, 0.02, 0.03, 0.04]))
+            .with("class", Column::Text(texts.to_vec()));
+        let (fields, view) = (["class".to_owned()], SweepView::default());
+        let svg = sweep(&table, &parameters, Some(&fields), &Findings::default(), "", &view).unwrap().svg();
+        let legend = ["failed", "stick slip", "quiet"].map(|class| svg.find(&format!(">class: {class}<")));
+        assert!(legend.is_sorted() && legend[0].is_some(), "{svg}");
+        let cells =
+            |class: &str| svg.matches(&format!(r#"fill="{}""#, Class::named(class).unwrap().css())).count();
+        // A cell for each point, and one in the legend.
+        assert_eq!(["failed", "stick_slip", "quiet", "buckled"].map(cells), [2, 2, 3, 0]);
+    }
+
+    #[test]
     fn words_are_mapped_over_two_parameters_and_over_one() {
         let two = drawn("stable", &[]).unwrap();
         assert!(two.contains(">stable: false<") && two.contains(">stable: true<"), "{two}");
@@ -404,7 +441,7 @@ mod tests {
             texts.iter().map(|text| Some(text.as_str())).chain([None, Some("kind 11")]).collect();
         let (words, values) = kinds(&texts);
         assert_eq!(
-            (words.len(), words[0].as_str(), words[6].as_str(), words[7].as_str()),
+            (words.len(), words[0].text.as_str(), words[6].text.as_str(), words[7].text.as_str()),
             (8, "kind 00", "kind 11", "other")
         );
         assert!(values[12].is_nan() && values[13] == 6.0 && values[8] == 7.0, "{values:?}");

@@ -25,10 +25,12 @@ const GROUPS: [Group; 4] = [
         &[
             ("submit", "drillsweep submit paper-200m-damped --flow-rate 0.01:0.04:4 --name flow"),
             ("append", "drillsweep append flow --flow-rate 0.05,0.06"),
+            ("refine", "drillsweep refine flow --by class --budget 50"),
             ("watch", "drillsweep watch flow"),
             ("list", "drillsweep list --owner anne --state running"),
             ("show", "drillsweep show flow 2"),
             ("fetch", "drillsweep fetch flow --output results"),
+            ("report", "drillsweep report flow --units field --output flow.html"),
             ("cancel", "drillsweep cancel flow"),
             ("retry", "drillsweep retry flow"),
             ("pause", "drillsweep pause flow"),

@@ -16,6 +16,7 @@ mod modes;
 mod plan;
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 mod processor;
+mod report;
 mod scenario;
 mod service;
 mod simulate;
@@ -77,12 +78,16 @@ enum Command {
     Delete(sweeps::DeleteArguments),
     /// Add points to a sweep, over its own parameters; those that it has are skipped.
     Append(submit::AppendArguments),
+    /// Add points to a sweep between those whose classes, or values of a column, differ.
+    Refine(submit::RefineArguments),
     /// List the failed points of all sweeps, the latest first.
     Failures(sweeps::FailuresArguments),
     /// Show the queue and the workers.
     Status(sweeps::StatusArguments),
     /// Download a sweep's table and files.
     Fetch(fetch::FetchArguments),
+    /// Write a printable report of a sweep or of one point, as HTML.
+    Report(report::ReportArguments),
     /// Simulate one point here, without a server, and print a summary.
     Simulate(simulate::SimulateArguments),
     /// Print a plan of a scenario, without running it: effects with reasons, steps and time at each accuracy.
@@ -203,9 +208,11 @@ fn run() -> anyhow::Result<()> {
         Command::Change(arguments) => sweeps::change(&arguments),
         Command::Delete(arguments) => sweeps::delete(&arguments),
         Command::Append(arguments) => submit::append(&arguments),
+        Command::Refine(arguments) => submit::refine(&arguments),
         Command::Failures(arguments) => sweeps::failures(&arguments),
         Command::Status(arguments) => sweeps::status(&arguments),
         Command::Fetch(arguments) => fetch::fetch(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Args;
+use drillsweep_api::judgement::OperatingLimits;
 use drillsweep_api::time_span;
 use drillsweep_server::{
     Config, ConnectionLimits, DEFAULT_ADDRESS, Exposition, Listeners, OwnerLimits, RetentionConfig,
@@ -69,6 +70,16 @@ struct ListenArguments {
     /// Points of an owner that may be queued or running.
     #[arg(long, value_name = "NUMBER", default_value_t = OwnerLimits::default().open_points)]
     open_points: u64,
+    /// Changes of the limits by which points are judged: `COLUMN:VALUE` in SI units or `COLUMN:off`, separated by commas.
+    #[arg(
+        long,
+        value_name = "LIMITS",
+        env = "DRILLSWEEP_OPERATING_LIMITS",
+        value_parser = OperatingLimits::parse,
+        default_value = "",
+        hide_default_value = true
+    )]
+    operating_limits: OperatingLimits,
 }
 
 #[derive(Args)]
@@ -362,6 +373,7 @@ impl Service {
                 policy: arguments.retention.policy(),
                 interval: Some(arguments.retention_interval).filter(|interval| !interval.is_zero()),
             },
+            operating_limits: arguments.operating_limits.clone(),
             ..Config::default()
         };
         Ok(Self { store, listeners, config })

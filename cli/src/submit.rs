@@ -8,7 +8,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use drillsweep_api::{
     AppendRequest, Axis, AxisName, Design, FieldProblem, ListedPoints, PlannedPoint, PlannedVerification,
-    Scale, Sweep, SweepRequest,
+    Refinement, RefinementState, Scale, Sweep, SweepRequest,
 };
 use drillsweep_quantity::unit;
 use drillsweep_scenario::ScenarioRequest;
@@ -115,6 +115,35 @@ pub(crate) struct AppendArguments {
     json: bool,
 }
 
+#[derive(Args)]
+pub(crate) struct RefineArguments {
+    #[command(flatten)]
+    server: ServerArguments,
+    /// The sweep: its identifier, the beginning of its identifier, or its name.
+    sweep: String,
+    /// Column whose values are compared, or `class`.
+    #[arg(long, default_value = "class", value_name = "COLUMN")]
+    by: String,
+    /// Parameters over which points are neighbours, one or two.
+    #[arg(long, value_name = "PATH", value_delimiter = ',')]
+    over: Vec<String>,
+    /// Longest edge that is not divided, as a part of the range of a parameter.
+    #[arg(long, default_value_t = 0.02, value_name = "PART")]
+    resolution: f64,
+    /// For a column: smallest difference that is divided, as a part of the range of all values.
+    #[arg(long, value_name = "PART")]
+    difference: Option<f64>,
+    /// For classes: changes of the default limits, `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+    #[arg(long)]
+    limits: Option<String>,
+    /// Largest number of points to add.
+    #[arg(long, default_value_t = 100, value_name = "NUMBER")]
+    budget: u32,
+    /// Print the sweep as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
 impl DesignArguments {
     /// Part of a request that describes its points.
     fn request(&self) -> AppendRequest {
@@ -128,6 +157,7 @@ impl DesignArguments {
             samples: self.samples,
             seed: self.seed,
             skip: self.skip,
+            refine: None,
         }
     }
 }
@@ -142,9 +172,53 @@ pub(crate) fn append(arguments: &AppendArguments) -> anyhow::Result<()> {
     print_sweep(&sweep, arguments.json)
 }
 
+/// Adds points between different neighbours, round by round, until the resolution is reached or the budget is spent; prints the sweep.
+pub(crate) fn refine(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let client = Client::new(&arguments.server)?;
+    let id = client.sweep_id(&arguments.sweep)?;
+    let path = format!("/v1/sweeps/{}/points", path_segment(&id));
+    let mut sweep = follow(&client, &id)?;
+    let first = sweep.counts.total;
+    let state = loop {
+        let added = u32::try_from(sweep.counts.total.saturating_sub(first))?;
+        let left = arguments.budget.saturating_sub(added);
+        if left == 0 {
+            break sweep.refinement;
+        }
+        let refine = Refinement {
+            by: arguments.by.clone(),
+            over: arguments.over.iter().map(|name| AxisName::from(name.as_str())).collect(),
+            resolution: arguments.resolution,
+            difference: arguments.difference,
+            limits: arguments.limits.clone(),
+            budget: left,
+        };
+        let request = AppendRequest { refine: Some(refine), ..AppendRequest::default() };
+        let before = sweep.counts.total;
+        sweep = client.post(&path, &request)?;
+        warn(&sweep);
+        if sweep.counts.total == before {
+            break sweep.refinement;
+        }
+        sweep = Sweep { refinement: sweep.refinement, ..follow(&client, &id)? };
+    };
+    if !arguments.json {
+        let added = count(sweep.counts.total.saturating_sub(first), "point");
+        print(&match state {
+            Some(RefinementState { open_edges, longest_edge, .. }) if open_edges > 0 => format!(
+                "{added} added; before the last of them {} longer than {} remained, the longest {longest_edge:.3} of its axis",
+                count(open_edges, "edge"),
+                arguments.resolution
+            ),
+            _ => format!("{added} added; every edge is located to {} of its axis", arguments.resolution),
+        });
+    }
+    print_sweep(&sweep, arguments.json)
+}
+
 impl SubmitArguments {
     fn request(&self) -> anyhow::Result<SweepRequest> {
-        let AppendRequest { design, axes, points, samples, seed, skip } = self.design.request();
+        let AppendRequest { design, axes, points, samples, seed, skip, refine: _ } = self.design.request();
         let ScenarioRequest { preset, scenario, set } = self.scenario.request(self.accuracy.as_deref())?;
         let outputs = self.outputs.clone().map(serde_json::from_value).transpose();
         Ok(SweepRequest {

@@ -532,7 +532,7 @@ fn seconds(time: Timestamp) -> String {
 }
 
 /// A path with the filters of a list that are given.
-fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String {
+pub(crate) fn with_filters(mut path: String, filters: &[(&str, &Option<String>)]) -> String {
     for (name, value) in filters {
         if let Some(value) = value {
             let _ = write!(path, "&{name}={}", path_segment(value));

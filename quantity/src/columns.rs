@@ -102,7 +102,7 @@ quantities! {
 
     // Equilibrium.
     /// Normal force of the wall on the node.
-    NORMAL_FORCE: "normal_force", "F_n", FORCE, "normal force";
+    NORMAL_FORCE: "normal_force", "F_n", FORCE, "side force";
     /// Effective tension: axial force with the pressures of the mud inside and outside taken into account.
     EFFECTIVE_TENSION: "effective_tension", "T", FORCE, "effective tension";
     /// Compression over the load from which the string buckles sinusoidally in its hole; 0 in tension, helical from sqrt(2) on.
@@ -118,19 +118,19 @@ quantities! {
     /// Nodes that touch the wall at the equilibrium.
     STATIC_CONTACTS: "static_contacts", "", -, "static contacts";
     /// Sum of the normal forces at the equilibrium.
-    STATIC_NORMAL_FORCE_TOTAL: "static_normal_force_total", "", FORCE, "static normal force total";
+    STATIC_NORMAL_FORCE_TOTAL: "static_normal_force_total", "", FORCE, "total side force at rest";
     /// Effective tension of the uppermost element.
-    TENSION_TOP: "tension_top", "", FORCE, "tension top";
+    TENSION_TOP: "tension_top", "", FORCE, "surface tension";
     /// Effective tension of the lowest element.
-    TENSION_BIT: "tension_bit", "", FORCE, "tension bit";
+    TENSION_BIT: "tension_bit", "", FORCE, "tension at the bit";
     /// Torque of the uppermost element at the equilibrium that the run starts from, `statics.friction`.
-    TORQUE_TOP: "torque_top", "", TORQUE, "torque top";
+    TORQUE_TOP: "torque_top", "", TORQUE, "surface torque";
     /// Torque of the uppermost element at break-away: friction mu_s at every node that touches; absent if that equilibrium was not found.
-    TORQUE_TOP_BREAK_AWAY: "torque_top_break_away", "", TORQUE, "torque top at break-away";
+    TORQUE_TOP_BREAK_AWAY: "torque_top_break_away", "", TORQUE, "surface torque at break-away";
     /// Torque of the uppermost element of the rotating string: friction mu at the sliding speed of each node; absent if that equilibrium was not found.
-    TORQUE_TOP_ROTATING: "torque_top_rotating", "", TORQUE, "torque top rotating";
+    TORQUE_TOP_ROTATING: "torque_top_rotating", "", TORQUE, "surface torque while rotating";
     /// Torque of the lowest element.
-    TORQUE_BIT: "torque_bit", "", TORQUE, "torque bit";
+    TORQUE_BIT: "torque_bit", "", TORQUE, "torque at the bit";
 
     // Mud.
     /// Fluid friction coefficient of the string in the annulus.
@@ -189,7 +189,7 @@ quantities! {
     /// Time in contact with the wall.
     CONTACT_TIME: "contact_time", "", TIME, "contact time";
     /// Largest normal force of the wall.
-    LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest normal force";
+    LARGEST_NORMAL_FORCE: "largest_normal_force", "", FORCE, "largest side force";
     /// Number of slip-to-stick transitions of the node; in a summary of all nodes together.
     SLIP_TO_STICK_COUNT: "capture_count", "", -, "slip-to-stick transitions";
     /// Time that the node stuck.
@@ -260,6 +260,10 @@ quantities! {
     BENDING_MOMENT_PEAK_TIME: "bending_moment_peak_time", "", TIME, "time of the bending moment peak";
     /// Largest bending stress at the outer diameter.
     BENDING_STRESS_PEAK: "bending_stress_peak", "", STRESS, "bending stress peak";
+    /// Largest axial stress by the effective tension, in magnitude.
+    AXIAL_STRESS_PEAK: "axial_stress_peak", "", STRESS, "axial stress peak";
+    /// Largest shear stress by the torque, at the outer diameter.
+    TORSIONAL_STRESS_PEAK: "torsional_stress_peak", "", STRESS, "torsional stress peak";
     /// Mean effective tension of the element above the node, of the first node of the one below it.
     TENSION_MEAN: "tension_mean", "", FORCE, "mean tension";
     /// Smallest effective tension.
@@ -276,6 +280,11 @@ quantities! {
     EQUIVALENT_STRESS_PEAK: "equivalent_stress_peak", "", STRESS, "equivalent stress peak";
     /// Time of the largest equivalent stress.
     EQUIVALENT_STRESS_PEAK_TIME: "equivalent_stress_peak_time", "", TIME, "time of the equivalent stress peak";
+
+    /// Largest equivalent stress over the least yield strength; absent without a grade.
+    YIELD_RATIO: "yield_ratio", "", RATIO, "stress over yield strength";
+    /// Part of the life that fatigue takes by time: rainflow cycles of the axial stress, Goodman's mean stress, class B of ISO 19902 in seawater with protection; absent without a grade.
+    FATIGUE_RATE: "fatigue_rate", "", WEAR_RATE, "fatigue rate";
 
     // The worst of all nodes and elements.
     /// Largest orbit size of all nodes.
@@ -320,10 +329,26 @@ quantities! {
     LARGEST_BENDING_STRESS: "largest_bending_stress", "", STRESS, "largest bending stress of all elements";
     /// Measured depth of the element's lower end with the largest bending stress.
     LARGEST_BENDING_STRESS_DEPTH: "largest_bending_stress_depth", "", DEPTH, "depth of the largest bending stress";
+    /// Largest axial stress by the effective tension of all elements, in magnitude.
+    LARGEST_AXIAL_STRESS: "largest_axial_stress", "", STRESS, "largest axial stress of all elements";
+    /// Measured depth of the element's lower end with the largest axial stress.
+    LARGEST_AXIAL_STRESS_DEPTH: "largest_axial_stress_depth", "", DEPTH, "depth of the largest axial stress";
+    /// Largest shear stress by the torque of all elements, at the outer diameter.
+    LARGEST_TORSIONAL_STRESS: "largest_torsional_stress", "", STRESS, "largest torsional stress of all elements";
+    /// Measured depth of the element's lower end with the largest shear stress by the torque.
+    LARGEST_TORSIONAL_STRESS_DEPTH: "largest_torsional_stress_depth", "", DEPTH, "depth of the largest torsional stress";
     /// Largest equivalent stress by von Mises of all elements.
     LARGEST_EQUIVALENT_STRESS: "largest_equivalent_stress", "", STRESS, "largest equivalent stress of all elements";
     /// Measured depth of the element's lower end with the largest equivalent stress.
     LARGEST_EQUIVALENT_STRESS_DEPTH: "largest_equivalent_stress_depth", "", DEPTH, "depth of the largest equivalent stress";
+    /// Largest equivalent stress over the least yield strength of all elements with a grade; absent without any.
+    LARGEST_YIELD_RATIO: "largest_yield_ratio", "", RATIO, "largest stress over yield strength";
+    /// Measured depth of the element's lower end with the largest stress over yield strength.
+    LARGEST_YIELD_RATIO_DEPTH: "largest_yield_ratio_depth", "", DEPTH, "depth of the largest stress over yield strength";
+    /// Largest part of the life that fatigue takes by time, of all elements with a grade; absent without any.
+    LARGEST_FATIGUE_RATE: "largest_fatigue_rate", "", WEAR_RATE, "largest fatigue rate";
+    /// Measured depth of the element's lower end with the largest fatigue rate.
+    LARGEST_FATIGUE_RATE_DEPTH: "largest_fatigue_rate_depth", "", DEPTH, "depth of the largest fatigue rate";
     /// Mean rotation speed of the bit.
     BIT_SPEED_MEAN: "bit_speed_mean", "", ANGULAR_SPEED, "mean bit speed";
     /// Lowest rotation speed of the bit; negative is backward.
@@ -339,9 +364,11 @@ quantities! {
     /// Amplitude of the strongest line of the bit's rotation speed.
     BIT_LINE_AMPLITUDE: "bit_line_amplitude", "", ANGULAR_SPEED, "amplitude of the bit speed";
     /// Smallest torque of the uppermost element: the strongest that opposes clockwise rotation.
-    TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest torque top";
+    TORQUE_TOP_MIN: "torque_top_min", "", TORQUE, "smallest surface torque";
     /// Largest torque of the uppermost element.
-    TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest torque top";
+    TORQUE_TOP_MAX: "torque_top_max", "", TORQUE, "largest surface torque";
+    /// Dynamic torque: largest less smallest torque of the uppermost element.
+    TORQUE_TOP_RANGE: "torque_top_range", "", TORQUE, "dynamic surface torque";
     /// Share of the string's length that whirls backward: moves backward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
     BACKWARD_WHIRL_FRACTION: "backward_whirl_fraction", "", RATIO, "share in backward whirl";
     /// Share of the string's length that whirls forward: moves forward about the hole's axis for at least nine tenths of the time, in orbits of at least a tenth of the clearance.
@@ -359,19 +386,19 @@ quantities! {
     /// Change of the energy stored in the structure, in the position of its weight and end loads, and in the wall.
     STORED: "stored", "", ENERGY, "stored";
     /// Work of the unbalance up to this time.
-    WORK_UNBALANCE: "work_unbalance", "", ENERGY, "work unbalance";
+    WORK_UNBALANCE: "work_unbalance", "", ENERGY, "work of the unbalance";
     /// Work of the rotation imposed at the top against friction up to this time, as far as it acts through the contacts.
-    WORK_ROTATION: "work_rotation", "", ENERGY, "work rotation";
+    WORK_ROTATION: "work_rotation", "", ENERGY, "work of the rotation";
     /// Work of the flows (Coriolis and follower forces) and of the follower torque up to this time.
     WORK_FLOW_AND_TORQUE: "work_flow_and_torque", "", ENERGY, "work of flow and follower torque";
     /// Energy dissipated by structural damping up to this time.
-    DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated structure";
+    DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated by the structure";
     /// Energy dissipated by the mud up to this time.
-    DISSIPATED_FLUID: "dissipated_fluid", "", ENERGY, "dissipated fluid";
+    DISSIPATED_FLUID: "dissipated_fluid", "", ENERGY, "dissipated by the mud";
     /// Energy dissipated by friction at contacts up to this time.
-    DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated friction";
+    DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated by friction";
     /// Energy dissipated by the wall's dampers up to this time.
-    DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated contact";
+    DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated by the wall";
     /// Net work of contact and friction forces on the motion up to this time.
     CONTACT_WORK: "contact_work", "", ENERGY, "contact work";
     /// Imbalance of energy: the error of the time integration.
@@ -391,25 +418,25 @@ quantities! {
     /// Amplitude with the samples weighted by a Hann window.
     AMPLITUDE_HANN: "amplitude_hann", "", WIDTH, "amplitude hann";
     /// Frequency of the highest line; negative is backward whirl.
-    LINE_FREQUENCY_HZ: "line_frequency_hz", "", FREQUENCY, "line frequency hz";
+    LINE_FREQUENCY_HZ: "line_frequency_hz", "", FREQUENCY, "frequency of the highest line";
     /// Amplitude of the highest line.
-    LINE_AMPLITUDE: "line_amplitude", "", WIDTH, "line amplitude";
+    LINE_AMPLITUDE: "line_amplitude", "", WIDTH, "amplitude of the highest line";
     /// Root mean square motion about the mean at frequencies up to 20 Hz.
     BAND_RMS: "band_rms", "", WIDTH, "band rms";
 
     // Statistics of orbits.
     /// Distance of the orbit's mean position from the hole's axis.
-    ORBIT_OFFSET: "orbit_offset", "", WIDTH, "orbit offset";
+    ORBIT_OFFSET: "orbit_offset", "", WIDTH, "offset of the mean position";
     /// Mean distance from the hole's axis.
-    ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "orbit mean radius";
+    ORBIT_MEAN_RADIUS: "orbit_mean_radius", "", WIDTH, "mean distance from the axis";
     /// Largest distance from the hole's axis.
-    ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "orbit largest radius";
+    ORBIT_LARGEST_RADIUS: "orbit_largest_radius", "", WIDTH, "largest distance from the axis";
     /// Smallest distance from the hole's axis.
-    ORBIT_SMALLEST_RADIUS: "orbit_smallest_radius", "", WIDTH, "orbit smallest radius";
+    ORBIT_SMALLEST_RADIUS: "orbit_smallest_radius", "", WIDTH, "smallest distance from the axis";
     /// Orbit size: root mean square distance from the mean position.
-    ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "orbit radius rms";
+    ORBIT_RADIUS_RMS: "orbit_radius_rms", "", WIDTH, "lateral vibration";
     /// Standard deviation of the distance from the hole's axis.
-    ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "orbit radius deviation";
+    ORBIT_RADIUS_DEVIATION: "orbit_radius_deviation", "", WIDTH, "deviation of the radius";
     /// Largest less smallest displacement along the first axis of the node's frame.
     PEAK_TO_PEAK_U: "peak_to_peak_u", "", WIDTH, "peak to peak u";
     /// Largest less smallest displacement along the second axis of the node's frame.
@@ -427,13 +454,13 @@ quantities! {
     /// Largest relative difference of orbit size or radius deviation between the halves of the window, over the recorded nodes; absent if the motion has settled.
     HALVES_DIFFER: "halves_differ", "", RATIO, "halves differ";
     /// Frequency of the torsional mode that still grows at the end of the run; absent if none does.
-    GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "growing mode hz";
+    GROWING_MODE_HZ: "growing_mode_hz", "", FREQUENCY, "frequency of the growing mode";
     /// Growth of that mode's amplitude while it is small.
-    GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growing mode rate";
+    GROWING_MODE_RATE: "growing_mode_rate", "", RATE, "growth of the growing mode";
     /// Lower base frequency of regular motion.
-    BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "base frequency 1 hz";
+    BASE_FREQUENCY_1_HZ: "base_frequency_1_hz", "", FREQUENCY, "lower base frequency";
     /// Higher base frequency of regular motion; absent if there is one alone.
-    BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "base frequency 2 hz";
+    BASE_FREQUENCY_2_HZ: "base_frequency_2_hz", "", FREQUENCY, "higher base frequency";
     /// Runs of the point, the undisturbed one among them.
     ENSEMBLE_MEMBERS: "ensemble_members", "", -, "ensemble members";
     /// Time at which histories of neighbouring starts first part.
@@ -441,7 +468,7 @@ quantities! {
 
     // Errors and limits of a result.
     /// Frequency up to which the run's steps resolve vibrations.
-    RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "resolved hz";
+    RESOLVED_HZ: "resolved_hz", "", FREQUENCY, "highest resolved frequency";
     /// Steps of the shortest length that left more than the tolerance.
     UNRESOLVED_STEPS: "unresolved_steps", "", -, "unresolved steps";
     /// Estimated error of a lateral displacement at the end of the run, root mean square over all nodes, relative to the motion; absent if histories part.
@@ -455,9 +482,9 @@ quantities! {
     /// Relative error of orbit size that the accuracy promises, steps, mesh and sampling together; absent if it promises none.
     PROMISED_ERROR: "promised_error", "", RATIO, "promised error";
     /// Estimated relative error of orbit statistics by the time steps; absent if histories part.
-    TIME_ERROR: "time_error", "", RATIO, "time error";
+    TIME_ERROR: "time_error", "", RATIO, "error by time steps";
     /// Estimated relative error of orbit size by the window: differences between the windows of regular motion, half the confidence interval of irregular; absent if the motion has not settled or the window is fixed.
-    SAMPLING_ERROR: "sampling_error", "", RATIO, "sampling error";
+    SAMPLING_ERROR: "sampling_error", "", RATIO, "error by the window";
     /// Standard deviation of orbit size over the ensemble, relative to its mean.
     RELATIVE_SPREAD: "relative_spread", "", RATIO, "relative spread";
     /// Estimated relative error of the static distance from the hole's axis by the mesh.
@@ -483,9 +510,9 @@ quantities! {
     /// Kind of growth of small motions about the equilibrium.
     INSTABILITY: "instability", "", -, "instability";
     /// Growth rate of the mode that grows fastest.
-    INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "instability growth rate";
+    INSTABILITY_GROWTH_RATE: "instability_growth_rate", "", RATE, "growth of the instability";
     /// Frequency of the mode that grows fastest; next to 0 if the string leaves its equilibrium without vibrating about it.
-    INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "instability frequency hz";
+    INSTABILITY_FREQUENCY_HZ: "instability_frequency_hz", "", FREQUENCY, "frequency of the instability";
     /// Class of the point by its limits, the most severe that applies: failed, buckled, stick_slip, backward_whirl, impacts, over_limit, growing, forward_whirl, quiet; not_judged without loads.
     CLASS: "class", "", -, "class";
     /// Reason for which the class is uncertain: statistics have not settled, or the estimated error reaches across a limit.

@@ -11,7 +11,7 @@ pub struct Quantity {
     pub symbol: &'static str,
     /// Its units; none of names, and of numbers of things.
     pub units: Option<&'static Units>,
-    /// Its name in pictures.
+    /// Its name in pictures and texts, in the words of the field.
     pub label: &'static str,
     /// Its meaning, in a sentence; empty of fields of a scenario, whose own documentation gives it.
     pub meaning: &'static str,

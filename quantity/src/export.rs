@@ -5,13 +5,15 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::all::all;
+use crate::classes::{CLASSES, Class};
+use crate::columns;
 use crate::definition::Quantity;
 use crate::units::{self, Unit};
 
 /// Meaning of a name: a column without its node and spectrum window, or a field of a scenario by its path without indices.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct QuantityEntry {
-    /// Its name in pictures.
+    /// Its name in pictures and texts, in the words of the field.
     pub label: &'static str,
     /// Its symbol in the equations of the model, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,6 +33,18 @@ pub struct QuantityEntry {
     /// The unit in which the oil field reads it; absent of ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<UnitEntry>,
+    /// Words of a column of texts that has few, in their order: classes of points, the most severe first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub words: Vec<WordEntry>,
+}
+
+/// A word of a column of texts.
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct WordEntry {
+    /// The word, such as `stick_slip`.
+    pub word: &'static str,
+    /// Its colour in pictures, such as `#d55e00`.
+    pub colour: String,
 }
 
 /// A further unit of a served quantity.
@@ -56,6 +70,7 @@ fn entry(quantity: &Quantity) -> QuantityEntry {
     let unit = |unit: &Unit| UnitEntry { unit: unit.symbol, size: unit.size };
     let named = |text: &'static str| Some(text).filter(|text| !text.is_empty());
     let in_units = quantity.units.filter(|units| *units != &units::RATIO);
+    let word = |class: &Class| WordEntry { word: class.name, colour: class.css() };
     QuantityEntry {
         label: quantity.label,
         symbol: named(quantity.symbol),
@@ -64,5 +79,6 @@ fn entry(quantity: &Quantity) -> QuantityEntry {
         unit: quantity.units.map(|units| units.kept),
         shown: in_units.map(|units| unit(&units.shown)),
         field: in_units.map(|units| unit(&units.field)),
+        words: if quantity == &columns::CLASS { CLASSES.iter().map(word).collect() } else { Vec::new() },
     }
 }

@@ -284,10 +284,10 @@ mod tests {
     fn labels_say_which_column() {
         let label = |name| Name::parse(name).unwrap().to_string();
         assert_eq!(label("friction_coefficient"), "friction coefficient C_f");
-        assert_eq!(label("spread_orbit_radius_rms_49"), "spread of orbit radius rms, node 49");
-        assert_eq!(label("line_amplitude_49_w1"), "line amplitude, node 49, window 1");
-        assert_eq!(label("line_amplitude_57_73m_w1"), "line amplitude at 57.73 m, window 1");
-        assert_eq!(label("orbit_radius_rms_980m"), "orbit radius rms at 980 m");
+        assert_eq!(label("spread_orbit_radius_rms_49"), "spread of lateral vibration, node 49");
+        assert_eq!(label("line_amplitude_49_w1"), "amplitude of the highest line, node 49, window 1");
+        assert_eq!(label("line_amplitude_57_73m_w1"), "amplitude of the highest line at 57.73 m, window 1");
+        assert_eq!(label("orbit_radius_rms_980m"), "lateral vibration at 980 m");
         assert_eq!(label("string.sections[1].length"), "section length");
         assert_eq!(label("cost_cpu_time_orbit_size_2_percent"), "cost cpu time orbit size 2 percent");
     }

@@ -1,5 +1,18 @@
 //! Kinds of quantities by the units in which they are kept, shown and read.
 
+use serde::{Deserialize, Serialize};
+
+/// System of units in which quantities are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UnitSystem {
+    /// SI, with prefixes.
+    #[default]
+    Si,
+    /// Units of the oil field.
+    Field,
+}
+
 /// A further unit of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
@@ -13,6 +26,26 @@ impl Unit {
     /// A value in this unit.
     pub fn of(&self, value: f64) -> f64 {
         value / self.size
+    }
+
+    /// Its symbol as texts have it, such as `N·s/m²`; empty of ratios.
+    pub fn written(&self) -> String {
+        match self.symbol {
+            "1" => return String::new(),
+            "deg" => return "°".to_owned(),
+            _ => {}
+        }
+        let mut text = String::new();
+        for sign in self.symbol.chars() {
+            let is_raised = text.ends_with(|last: char| last.is_ascii_alphabetic());
+            text.push(match sign {
+                ' ' => '·',
+                '2' if is_raised => '²',
+                '3' if is_raised => '³',
+                sign => sign,
+            });
+        }
+        text
     }
 }
 
@@ -29,6 +62,16 @@ pub struct Units {
     pub shown: Unit,
     /// The unit in which the oil field reads it.
     pub field: Unit,
+}
+
+impl Units {
+    /// The unit in which readers of a system read it.
+    pub fn of(&self, system: UnitSystem) -> Unit {
+        match system {
+            UnitSystem::Si => self.shown,
+            UnitSystem::Field => self.field,
+        }
+    }
 }
 
 /// International foot \[m\], exact.
@@ -112,6 +155,8 @@ pub static ACCELERATION: Units =
     shown_in("acceleration", "m/s2", ("g", STANDARD_GRAVITY), ("g", STANDARD_GRAVITY));
 /// Numbers of events by time, read per minute.
 pub static EVENT_RATE: Units = shown_in("rate", "1/s", ("1/min", 1.0 / 60.0), ("1/min", 1.0 / 60.0));
+/// Parts of a life by time, read per hour.
+pub static WEAR_RATE: Units = shown_in("rate", "1/s", ("1/h", 1.0 / 3600.0), ("1/h", 1.0 / 3600.0));
 /// Stresses in solids.
 pub static STRESS: Units = shown_in("stress", "Pa", ("MPa", 1e6), ("ksi", 1e3 * POUND_FORCE / (INCH * INCH)));
 /// Pressures.
@@ -171,6 +216,16 @@ mod tests {
             let off = (units.field.size / published - 1.0).abs();
             assert!(off < 0.5 * 10_f64.powi(1 - digits), "{symbol}: {} off by {off:e}", units.field.size);
         }
+    }
+
+    #[test]
+    fn symbols_are_written_with_powers_and_products() {
+        let written = |units: &Units, system| units.of(system).written();
+        assert_eq!(written(&DAMPING_PER_LENGTH, UnitSystem::Si), "N·s/m²");
+        assert_eq!(written(&FLOW_RATE, UnitSystem::Si), "m³/s");
+        assert_eq!(written(&YIELD_STRESS, UnitSystem::Field), "lbf/100·ft²");
+        assert_eq!(written(&ANGLE_IN_DEGREES, UnitSystem::Si), "°");
+        assert_eq!(written(&RATIO, UnitSystem::Field), "");
     }
 
     #[test]

@@ -162,7 +162,60 @@ pub struct Material {
     /// Poisson's ratio, 0 to 0.5; usual 0.27 to 0.33. It sets the shear modulus, E / (2 (1 + nu)), and so torsional stiffness: 0.3
     /// instead of 0.27 lowers torsional frequencies by 1.2 %.
     pub poissons_ratio: f64,
+    /// Grade of the steel, from which strengths follow; absent means unknown: the results have no margin to yield and no fatigue. It
+    /// changes no motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grade: Option<Grade>,
 }
+
+/// Grade of steel, with its least yield and tensile strength: drillpipe of API Spec 5DP, collars of API Spec 7-1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
+pub enum Grade {
+    /// Drillpipe, 75 and 100 ksi.
+    #[serde(rename = "E-75")]
+    E75,
+    /// Drillpipe, 95 and 105 ksi.
+    #[serde(rename = "X-95")]
+    X95,
+    /// Drillpipe, 105 and 115 ksi.
+    #[serde(rename = "G-105")]
+    G105,
+    /// Drillpipe, 135 and 145 ksi.
+    #[serde(rename = "S-135")]
+    S135,
+    /// Collars below 7 inches and tool joints of at least as strong steel, 110 and 140 ksi.
+    #[serde(rename = "collar-110")]
+    Collar110,
+    /// Collars from 7 inches on, 100 and 135 ksi.
+    #[serde(rename = "collar-100")]
+    Collar100,
+}
+
+impl Grade {
+    /// Least yield strength \[Pa\].
+    pub fn yield_strength(self) -> f64 {
+        self.strengths_ksi()[0] * PASCALS_PER_KSI
+    }
+
+    /// Least tensile strength \[Pa\].
+    pub fn tensile_strength(self) -> f64 {
+        self.strengths_ksi()[1] * PASCALS_PER_KSI
+    }
+
+    fn strengths_ksi(self) -> [f64; 2] {
+        match self {
+            Self::E75 => [75.0, 100.0],
+            Self::X95 => [95.0, 105.0],
+            Self::G105 => [105.0, 115.0],
+            Self::S135 => [135.0, 145.0],
+            Self::Collar110 => [110.0, 140.0],
+            Self::Collar100 => [100.0, 135.0],
+        }
+    }
+}
+
+/// A thousand pounds-force per square inch: 4,448.2216152605 N on 0.0254^2 m2.
+const PASCALS_PER_KSI: f64 = 4_448.221_615_260_5 / (0.0254 * 0.0254);
 
 /// `count` equal pieces of pipe, one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]

@@ -119,7 +119,7 @@ numbers!(Scenario: well, string, mud, operation, contact, damping, mesh, duratio
 numbers!(Well: hole_diameter, survey);
 numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
 numbers!(DrillString: material, sections, gauges, unbalance);
-numbers!(Material: youngs_modulus, density, poissons_ratio);
+numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
 numbers!(Section: length, outer_diameter, inner_diameter, tool_joint, material; without kind, count);
 numbers!(ToolJoint: length, outer_diameter, inner_diameter, material);
 numbers!(Gauge: measured_depth, clearance);

@@ -18,7 +18,7 @@ use crate::guard::middleware;
 use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
-    analysis, cost, events, export, files, health, points, quantities, results, scenarios, session,
+    analysis, cost, events, export, files, health, points, quantities, report, results, scenarios, session,
     snapshots, spectrogram, statistics, status, sweeps, verification, web,
 };
 
@@ -51,6 +51,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(sweeps::table::table))
         .routes(routes!(sweeps::window::window))
         .routes(routes!(sweeps::table::columns))
+        .routes(routes!(report::of_sweep))
         .routes(routes!(verification::show))
         .routes(routes!(events::follow))
         .routes(routes!(export::export))
@@ -76,6 +77,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
         .routes(routes!(analysis::diagnosis))
+        .routes(routes!(report::of_point))
         .routes(routes!(cost::show))
         .routes(routes!(scenarios::list, scenarios::read))
         .routes(routes!(scenarios::show))

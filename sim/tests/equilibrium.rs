@@ -166,7 +166,8 @@ fn without_gravity_axial_force_and_pressures_are_the_same_all_along_a_vertical_s
     assert!(*with_weight.pressures.expect("there is mud").annulus.last().expect("the bit") > 4e6);
 }
 
-const ALUMINIUM: Material = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+const ALUMINIUM: Material =
+    Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33, grade: None };
 
 /// Steel of the first length, then aluminium of the second \[m\], in a horizontal hole without a wall; with the beams of both.
 fn steel_and_aluminium(lengths: [f64; 2]) -> (Scenario, [BeamSection; 2]) {

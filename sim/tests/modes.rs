@@ -519,7 +519,7 @@ fn a_rod_of_two_materials_has_the_modes_of_a_stepped_rod() {
     for station in &mut scenario.well.survey {
         (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
     }
-    let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+    let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33, grade: None };
     let (steel, collar) = (scenario.string.material, scenario.string.sections[2]);
     let section = |length, material| Section { length, count: 1, material, ..collar };
     scenario.string.sections = vec![section(90.0, None), section(110.0, Some(aluminium))];

@@ -34,8 +34,16 @@ pub struct LoadSummary {
     pub bending_moment: Worst,
     /// Largest bending stress \[Pa\].
     pub bending_stress: Worst,
+    /// Largest axial stress by the effective tension \[Pa\].
+    pub axial_stress: Worst,
+    /// Largest shear stress by the torque \[Pa\].
+    pub torsional_stress: Worst,
     /// Largest equivalent stress \[Pa\].
     pub equivalent_stress: Worst,
+    /// Largest equivalent stress over the yield strength; absent if no element has a grade.
+    pub yield_ratio: Option<Worst>,
+    /// Largest part of the life that fatigue takes by time \[1/s\]; absent if no element has a grade.
+    pub fatigue_rate: Option<Worst>,
     /// Rotation speed of the bit \[rad/s\].
     pub bit_speed: Span,
     /// Stick-slip severity of the bit; absent without a mean rotation.
@@ -78,6 +86,14 @@ impl LoadSummary {
         let of_elements = |value: &dyn Fn(&ElementLoads) -> f64| {
             worst(elements.iter().enumerate().map(|(e, loads)| (value(loads), depth(e + 1))))
         };
+        let of_graded = |value: &dyn Fn(&ElementLoads) -> Option<f64>| {
+            let mut graded = elements
+                .iter()
+                .enumerate()
+                .filter_map(|(e, loads)| Some((value(loads)?, depth(e + 1))))
+                .peekable();
+            graded.peek().is_some().then(|| worst(graded))
+        };
         let length_of = |is_it: &dyn Fn(usize) -> bool| {
             let at_node = |node: usize| if is_it(node) { 0.5 } else { 0.0 };
             let lengths = model.mesh.elements.iter().enumerate();
@@ -100,7 +116,11 @@ impl LoadSummary {
             sliding_power: nodes.iter().map(|node| node.sliding_power).sum(),
             bending_moment: of_elements(&|element| element.bending_moment.peak.value),
             bending_stress: of_elements(&|element| element.bending_stress),
+            axial_stress: of_elements(&|element| element.axial_stress),
+            torsional_stress: of_elements(&|element| element.torsional_stress),
             equivalent_stress: of_elements(&|element| element.equivalent_stress.value),
+            yield_ratio: of_graded(&|element| element.yield_ratio),
+            fatigue_rate: of_graded(&|element| element.fatigue_rate),
             bit_speed: bit.rotation_speed,
             bit_severity: bit.stick_slip_severity(),
             bit_stick_fraction: bit.stick_fraction,

@@ -156,6 +156,8 @@ pub static LOADS: Layout = Layout {
         &BENDING_MOMENT_PEAK,
         &BENDING_MOMENT_PEAK_TIME,
         &BENDING_STRESS_PEAK,
+        &AXIAL_STRESS_PEAK,
+        &TORSIONAL_STRESS_PEAK,
         &TENSION_MEAN,
         &TENSION_MIN,
         &TENSION_MAX,
@@ -164,6 +166,8 @@ pub static LOADS: Layout = Layout {
         &TORQUE_MAX,
         &EQUIVALENT_STRESS_PEAK,
         &EQUIVALENT_STRESS_PEAK_TIME,
+        &YIELD_RATIO,
+        &FATIGUE_RATE,
     ],
     by_node: &[],
 };

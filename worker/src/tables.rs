@@ -224,9 +224,19 @@ fn loads_row(loads: &LoadSummary, orbits: &[OrbitSummary]) -> Row {
         (&LARGEST_SIDE_FORCE, &LARGEST_SIDE_FORCE_DEPTH, loads.side_force),
         (&LARGEST_BENDING_MOMENT, &LARGEST_BENDING_MOMENT_DEPTH, loads.bending_moment),
         (&LARGEST_BENDING_STRESS, &LARGEST_BENDING_STRESS_DEPTH, loads.bending_stress),
+        (&LARGEST_AXIAL_STRESS, &LARGEST_AXIAL_STRESS_DEPTH, loads.axial_stress),
+        (&LARGEST_TORSIONAL_STRESS, &LARGEST_TORSIONAL_STRESS_DEPTH, loads.torsional_stress),
         (&LARGEST_EQUIVALENT_STRESS, &LARGEST_EQUIVALENT_STRESS_DEPTH, loads.equivalent_stress),
     ] {
         put_worst(quantity, depth, worst);
+    }
+    for (quantity, depth, worst) in [
+        (&LARGEST_YIELD_RATIO, &LARGEST_YIELD_RATIO_DEPTH, loads.yield_ratio),
+        (&LARGEST_FATIGUE_RATE, &LARGEST_FATIGUE_RATE_DEPTH, loads.fatigue_rate),
+    ] {
+        if let Some(worst) = worst {
+            put_worst(quantity, depth, worst);
+        }
     }
     row.put(&SLIDING_POWER_TOTAL, loads.sliding_power);
     row.put(&BIT_SPEED_MEAN, loads.bit_speed.mean);
@@ -236,6 +246,7 @@ fn loads_row(loads: &LoadSummary, orbits: &[OrbitSummary]) -> Row {
     row.put(&BIT_STICK_FRACTION, loads.bit_stick_fraction);
     row.put(&TORQUE_TOP_MIN, loads.torque_top.least);
     row.put(&TORQUE_TOP_MAX, loads.torque_top.largest);
+    row.put(&TORQUE_TOP_RANGE, loads.torque_top.largest - loads.torque_top.least);
     row.put(&BACKWARD_WHIRL_FRACTION, loads.backward_fraction);
     row.put(&FORWARD_WHIRL_FRACTION, loads.forward_fraction);
     row.put(&ROLLING_WHIRL_FRACTION, loads.rolling_fraction);
@@ -593,6 +604,8 @@ fn loads<H>(model: &Model, records: &Records<H>) -> Table {
     of_element(&BENDING_MOMENT_PEAK, &|element| element.bending_moment.peak.value);
     of_element(&BENDING_MOMENT_PEAK_TIME, &|element| element.bending_moment.peak.time);
     of_element(&BENDING_STRESS_PEAK, &|element| element.bending_stress);
+    of_element(&AXIAL_STRESS_PEAK, &|element| element.axial_stress);
+    of_element(&TORSIONAL_STRESS_PEAK, &|element| element.torsional_stress);
     of_element(&TENSION_MEAN, &|element| element.tension.mean);
     of_element(&TENSION_MIN, &|element| element.tension.least);
     of_element(&TENSION_MAX, &|element| element.tension.largest);
@@ -601,6 +614,8 @@ fn loads<H>(model: &Model, records: &Records<H>) -> Table {
     of_element(&TORQUE_MAX, &|element| element.torque.largest);
     of_element(&EQUIVALENT_STRESS_PEAK, &|element| element.equivalent_stress.value);
     of_element(&EQUIVALENT_STRESS_PEAK_TIME, &|element| element.equivalent_stress.time);
+    of_element(&YIELD_RATIO, &|element| or_null(element.yield_ratio));
+    of_element(&FATIGUE_RATE, &|element| or_null(element.fatigue_rate));
     table
 }
 

@@ -38,6 +38,13 @@ def test_values_read_in_units_of_the_oil_field() -> None:
         assert found.field.of(value) == pytest.approx(read, rel=1e-5)
 
 
+def test_classes_have_their_order_and_colours() -> None:
+    found = quantity("class")
+    assert found is not None
+    assert list(found.words)[:3] == ["failed", "buckled", "stick_slip"]
+    assert found.words["quiet"] == "#009e73"
+
+
 def test_units_are_those_that_tables_are_served_with(sweep: Sweep) -> None:
     point = sweep.point(1)
     tables = [sweep.table(), point.profile(), point.statics(), point.history(), point.contacts(), point.energy()]

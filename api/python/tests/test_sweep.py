@@ -11,9 +11,11 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas
 import polars
 import pytest
+from matplotlib.colors import to_rgba_array
 
 import drillsweep
 from drillsweep import (
@@ -28,6 +30,8 @@ from drillsweep import (
     Problem,
     Range,
     Sweep,
+    plot,
+    quantity,
 )
 from drillsweep.progress import ProgressBar
 from service import SHORT, Service
@@ -310,3 +314,24 @@ def test_absent_server_is_reported_at_once() -> None:
             with pytest.raises(drillsweep.ConnectionError, match="is the server up") as raised:
                 client.queue()
             assert isinstance(raised.value, ConnectionError), "the builtin catches it, too"
+
+
+def test_reports_are_texts_and_files(sweep: Sweep, tmp_path: Path) -> None:
+    text = sweep.report(limits={"largest_side_force": None}, units="field")
+    assert text.startswith("<!DOCTYPE html>")
+    assert "8.5\N{NO-BREAK SPACE}in" in text
+    assert sweep.save_report(tmp_path / "sweep.html").read_text() == sweep.report()
+    point = sweep.point(2)
+    assert point.key in point.report()
+    assert point.save_report(tmp_path / "point.html").read_text() == point.report()
+
+
+def test_classes_are_drawn_in_their_colours(sweep: Sweep) -> None:
+    axes = plot.window(sweep)
+    classes = sweep.window().columns["class"]
+    known = quantity("class")
+    assert known is not None
+    drawn = {to_rgba_array(points.get_edgecolor()).tobytes() for points in axes.collections}
+    assert drawn == {to_rgba_array(known.words[name]).tobytes() for name in classes}
+    assert sum(np.shape(points.get_offsets())[0] for points in axes.collections) == len(classes)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("flow rate [m\u00b3/s]", "mud density [kg/m\u00b3]")

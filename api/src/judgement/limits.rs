@@ -15,6 +15,10 @@ const MOST_LIMITS: usize = 64;
 #[serde(transparent)]
 pub struct OperatingLimits(BTreeMap<String, f64>);
 
+/// Changes of limits by column, in the column's unit; absent values remove a limit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LimitChanges(Vec<(String, Option<f64>)>);
+
 /// Reason for which limits cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LimitError {
@@ -47,7 +51,7 @@ static OF_CLASSES: [&Quantity; 5] = [
 ];
 
 /// The default limits, in the columns' units.
-static DEFAULTS: [(&Quantity, f64); 8] = [
+static DEFAULTS: [(&Quantity, f64); 9] = [
     // Sinusoidal buckling: Dawson and Paslay 1984, in curved holes He and Kyllingstad 1995.
     (&LARGEST_BUCKLING_RATIO, 1.0),
     // The bit just stops at its slowest.
@@ -61,6 +65,8 @@ static DEFAULTS: [(&Quantity, f64); 8] = [
     (&LARGEST_LATERAL_ACCELERATION_RMS, 2.0 * units::ACCELERATION.shown.size),
     // Fatigue of grade S-135 without tension: 20 ksi (API RP 7G, after Lubinski).
     (&LARGEST_BENDING_STRESS, 20.0 * units::STRESS.field.size),
+    // Definition: yield.
+    (&LARGEST_YIELD_RATIO, 1.0),
     // Least yield strength of grade E: 75 ksi (API Spec 5DP).
     (&LARGEST_EQUIVALENT_STRESS, 75.0 * units::STRESS.field.size),
 ];
@@ -71,13 +77,13 @@ impl Default for OperatingLimits {
     }
 }
 
-impl OperatingLimits {
-    /// The default limits with changes: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+impl LimitChanges {
+    /// Changes from a text: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
     ///
     /// # Errors
     /// An entry cannot be read, names no column of numbers, or is not above zero, or there are too many.
     pub fn parse(text: &str) -> Result<Self, LimitError> {
-        let mut limits = Self::default();
+        let mut changes = Vec::new();
         let entries = text.split(',').map(str::trim).filter(|entry| !entry.is_empty());
         for (number, entry) in entries.enumerate() {
             if number >= MOST_LIMITS {
@@ -93,14 +99,42 @@ impl OperatingLimits {
                 });
             }
             if value == "off" {
-                limits.0.remove(column);
+                changes.push((column.to_owned(), None));
                 continue;
             }
             let limit = value.parse().ok().filter(|limit: &f64| limit.is_finite() && *limit > 0.0);
             let limit = limit.ok_or_else(|| LimitError::Value(column.to_owned()))?;
-            limits.0.insert(column.to_owned(), limit);
+            changes.push((column.to_owned(), Some(limit)));
         }
-        Ok(limits)
+        Ok(Self(changes))
+    }
+}
+
+impl OperatingLimits {
+    /// The default limits with changes from a text.
+    ///
+    /// # Errors
+    /// Errors of [`LimitChanges::parse`].
+    pub fn parse(text: &str) -> Result<Self, LimitError> {
+        Ok(Self::default().with(&LimitChanges::parse(text)?))
+    }
+
+    /// The same limits with changes, of which a later one replaces an earlier one of the same column.
+    #[must_use]
+    pub fn with(&self, changes: &LimitChanges) -> Self {
+        let mut limits = self.clone();
+        for (column, limit) in &changes.0 {
+            match limit {
+                Some(limit) => limits.0.insert(column.clone(), *limit),
+                None => limits.0.remove(column),
+            };
+        }
+        limits
+    }
+
+    /// Limits by column, in the column's unit.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.0.iter().map(|(column, limit)| (column.as_str(), *limit))
     }
 
     /// The same limits times a factor.

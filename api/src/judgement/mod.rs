@@ -7,12 +7,12 @@ mod lines;
 
 use drillsweep_quantity::columns::*;
 use drillsweep_quantity::units::{self, Unit};
-use drillsweep_quantity::{Name, Quantity};
+use drillsweep_quantity::{CLASSES, Name, Quantity};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-pub use limits::{LimitError, OperatingLimits};
+pub use limits::{LimitChanges, LimitError, OperatingLimits};
 pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes};
 
 /// Class of a point, the most severe first.
@@ -60,18 +60,7 @@ impl MotionClass {
 
     /// The name in requests and responses.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Failed => "failed",
-            Self::Buckled => "buckled",
-            Self::StickSlip => "stick_slip",
-            Self::BackwardWhirl => "backward_whirl",
-            Self::Impacts => "impacts",
-            Self::OverLimit => "over_limit",
-            Self::Growing => "growing",
-            Self::ForwardWhirl => "forward_whirl",
-            Self::Quiet => "quiet",
-            Self::NotJudged => "not_judged",
-        }
+        CLASSES[self as usize].name
     }
 }
 
@@ -378,6 +367,16 @@ mod tests {
     fn judged(row: &Value, limits: &str) -> Judgement {
         let limits = OperatingLimits::parse(limits).unwrap();
         Judgement::of_row(row.as_object().unwrap(), &limits)
+    }
+
+    #[test]
+    fn classes_are_those_of_the_vocabulary_in_its_order() {
+        let names = MotionClass::ALL.map(|class| serde_json::to_value(class).unwrap());
+        assert_eq!(names, CLASSES.map(|class| json!(class.name)));
+        assert!(
+            MotionClass::ALL.is_sorted()
+                && MotionClass::ALL.iter().all(|class| names.contains(&json!(class.name())))
+        );
     }
 
     #[test]

@@ -11,3 +11,4 @@ pub mod spectrum;
 pub mod statistics;
 pub mod verification;
 pub mod window;
+pub mod worst;

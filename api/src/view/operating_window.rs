@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
 use super::points::PointSummary;
+use super::worst::WorstValues;
 use crate::judgement::{Judgement, MotionClass, OperatingLimits};
 
 /// Operating window as it is put together point by point: a row a point with its parameters, its class by limits, whether the class is uncertain, and
@@ -18,6 +19,7 @@ pub struct OperatingWindow {
     classes: Vec<Option<MotionClass>>,
     uncertain: Vec<Option<String>>,
     sentences: Vec<Option<String>>,
+    worst: WorstValues,
 }
 
 impl OperatingWindow {
@@ -30,6 +32,7 @@ impl OperatingWindow {
             classes: Vec::new(),
             uncertain: Vec::new(),
             sentences: Vec::new(),
+            worst: WorstValues::default(),
         }
     }
 
@@ -51,6 +54,7 @@ impl OperatingWindow {
                 let row: Map<String, Value> = serde_json::from_str(summary)?;
                 let judgement = Judgement::of_row(&row, &self.limits);
                 let uncertain = uncertainty(&row, &judgement);
+                self.worst.push(point.ordinal, &row, judgement.class);
                 (Some(judgement), uncertain)
             }
             (None, None) => (None, None),
@@ -64,6 +68,11 @@ impl OperatingWindow {
     /// The names of the parameters so far.
     pub fn parameters(&self) -> impl Iterator<Item = &str> {
         self.parameters.keys().map(String::as_str)
+    }
+
+    /// Largest values of the points so far.
+    pub fn worst(&self) -> &WorstValues {
+        &self.worst
     }
 
     /// Table of all rows, with the limits and the number of points of each class as attributes.

@@ -230,7 +230,8 @@ impl Findings {
             Some((name, bias)) => (name, bias),
             None => self.statistics.get_key_value(&self.worst_orbit_size()?.statistic)?,
         };
-        let of = if name == column { String::new() } else { format!(" of {name}") };
+        let words = Name::parse(name).map_or_else(|| name.clone(), |name| name.to_string());
+        let of = if name == column { String::new() } else { format!(" of {words}") };
         let largest = in_words(name, bias.largest);
         let asked = match bias.promised {
             Some(promised) if bias.exceeding > 0 => format!(", beyond the {} promised", percent(promised)),
@@ -421,7 +422,7 @@ mod tests {
         );
         assert_eq!(
             findings.caption("contact_count").unwrap(),
-            "4 points verified by the reference: bias of orbit_radius_rms_49 up to −5.00 %, beyond the 2 % promised"
+            "4 points verified by the reference: bias of lateral vibration, node 49 up to −5.00 %, beyond the 2 % promised"
         );
 
         // A method that promises nothing breaks no promise.

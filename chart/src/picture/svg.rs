@@ -10,6 +10,11 @@ use super::text::{Anchor, Weight};
 impl Drawing {
     /// A standalone SVG 1.1 document on white ground. The same drawing gives the same bytes.
     pub fn svg(&self) -> String {
+        format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}", self.svg_element())
+    }
+
+    /// The same as an element of an HTML document. Texts are escaped, and it has no styles and no scripts.
+    pub fn svg_element(&self) -> String {
         write(self)
     }
 }
@@ -19,8 +24,7 @@ pub(super) fn write(drawing: &Drawing) -> String {
     let (width, height) = (number(drawing.width), number(drawing.height));
     let _ = write!(
         out,
-        r#"<?xml version="1.0" encoding="UTF-8"?>
-<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Noto Sans, sans-serif">
+        r#"<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="Noto Sans, sans-serif">
 <title>{}</title>
 <rect width="{width}" height="{height}" fill="{}"/>
 "#,

@@ -62,10 +62,32 @@ pub struct SweepMap {
     pub value_label: String,
     /// The points.
     pub points: Vec<MapPoint>,
-    /// Words that the values are the indices of, in the order of the legend, at most 8; none if values are numbers.
-    pub words: Vec<String>,
+    /// Words that the values are the indices of, in the order of the legend; none if values are numbers.
+    pub words: Vec<Word>,
     /// Spacing of the values of a parameter on a grid.
     pub spacing: Spacing,
+}
+
+/// A word with the colour of its points.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Word {
+    /// The word.
+    pub text: String,
+    /// Red, green and blue in sRGB.
+    pub colour: [u8; 3],
+}
+
+impl Word {
+    /// A word of a colour by its number, below [`SweepMap::MOST_WORDS`].
+    pub fn numbered(number: usize, text: String) -> Self {
+        let Colour(red, green, blue) = kind_colour(number);
+        Self { text, colour: [red, green, blue] }
+    }
+
+    fn ground(&self) -> Colour {
+        let [red, green, blue] = self.colour;
+        Colour(red, green, blue)
+    }
 }
 
 /// Spacing of the values of a parameter on its axis.
@@ -94,7 +116,7 @@ pub struct MapPoint {
 }
 
 impl SweepMap {
-    /// The most words that a map has colours for.
+    /// The most words that have colours of their own by number.
     pub const MOST_WORDS: usize = KINDS;
 
     /// The map as a standalone SVG 1.1 document. The same map gives the same bytes.
@@ -157,11 +179,10 @@ impl SweepMap {
     /// The words by their colours, and on a mosaic cells without a value.
     fn legend(&self, points: &[&MapPoint]) -> Vec<Entry> {
         let label = &self.value_label;
-        let word =
-            |(kind, word): (usize, &String)| Entry::area(format!("{label}: {word}"), kind_colour(kind));
+        let word = |word: &Word| Entry::area(format!("{label}: {}", word.text), word.ground());
         let lacks = points.len() > MANY_POINTS && points.iter().any(|point| !point.value.is_finite());
         let none = lacks.then(|| Entry::area("no value".to_owned(), Colour::GRID));
-        self.words.iter().take(KINDS).enumerate().map(word).chain(none).collect()
+        self.words.iter().map(word).chain(none).collect()
     }
 
     /// Scale of the colours, at the right of the plot.
@@ -198,7 +219,7 @@ impl SweepMap {
 /// Colours of values.
 enum Colours<'m> {
     Numbers(PlotAxis),
-    Words(&'m [String]),
+    Words(&'m [Word]),
 }
 
 impl Colours<'_> {
@@ -206,8 +227,9 @@ impl Colours<'_> {
     fn of(&self, value: f64) -> Option<Colour> {
         match self {
             Colours::Numbers(axis) => axis.fraction(value).map(colour),
-            Colours::Words(words) => (value.is_finite() && value >= 0.0 && value < words.len() as f64)
-                .then(|| kind_colour(value as usize)),
+            Colours::Words(words) => {
+                value.is_finite().then(|| words.get(value as usize)).flatten().map(Word::ground)
+            }
         }
     }
 
@@ -223,7 +245,9 @@ impl Colours<'_> {
     fn text(&self, value: f64) -> String {
         match self {
             Colours::Numbers(_) => axis::three_digits(value),
-            Colours::Words(words) => words.get(value as usize).cloned().unwrap_or_default(),
+            Colours::Words(words) => {
+                words.get(value as usize).map(|word| word.text.clone()).unwrap_or_default()
+            }
         }
     }
 }
@@ -643,7 +667,8 @@ mod tests {
 
     #[test]
     fn words_have_colours_and_a_legend_but_no_scale() {
-        let words = ["failed".to_owned(), "succeeded".to_owned()];
+        let words =
+            [(0, "failed"), (1, "succeeded")].map(|(number, text)| Word::numbered(number, text.to_owned()));
         let value = |index: usize| (index % 2) as f64;
         let points = grid().into_iter().enumerate().map(|(k, point)| MapPoint { value: value(k), ..point });
         let map = SweepMap { points: points.collect(), words: words.into(), ..SweepMap::default() };

@@ -306,7 +306,7 @@ fn describe(expected_type: &str) -> &str {
 pub(crate) mod value {
     use std::time::Duration;
 
-    use drillsweep_api::judgement::OperatingLimits;
+    use drillsweep_api::judgement::LimitChanges;
     use drillsweep_api::time_span;
     use serde::{Deserialize, Deserializer, de::Error};
 
@@ -357,10 +357,10 @@ pub(crate) mod value {
         }
     }
 
-    /// Limits of columns: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
-    pub(crate) fn limits<'de, D: Deserializer<'de>>(deserializer: D) -> Result<OperatingLimits, D::Error> {
+    /// Changes of limits: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+    pub(crate) fn limits<'de, D: Deserializer<'de>>(deserializer: D) -> Result<LimitChanges, D::Error> {
         let text = String::deserialize(deserializer)?;
-        OperatingLimits::parse(&text).map_err(D::Error::custom)
+        LimitChanges::parse(&text).map_err(D::Error::custom)
     }
 
     /// `true` or `false`.

@@ -100,6 +100,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         expires: record.expires.map(timestamp).transpose()?,
         revision: record.revision.unsigned_abs(),
         warnings: Vec::new(),
+        refinement: None,
         request: None,
         tags: read(&record.tags_json)?,
         appended: Vec::new(),

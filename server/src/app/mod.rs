@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use axum::response::Response;
 use drillsweep_api::LIMITS;
+use drillsweep_api::judgement::OperatingLimits;
 use drillsweep_store::Store;
 use tokio::sync::watch;
 
@@ -67,6 +68,8 @@ pub struct Config {
     pub large_answer_bytes: usize,
     /// Number of requests for large answers that may wait; further ones are refused with a Retry-After.
     pub large_answers_waiting: usize,
+    /// Limits by which points are judged; a request may change them for its answer.
+    pub operating_limits: OperatingLimits,
     /// Time that a client may keep a large answer waiting, which is renewed at 32 kB/s; slower clients are broken off.
     pub large_answer_allowance: Duration,
 }
@@ -91,6 +94,7 @@ impl Default for Config {
             large_answers: cores,
             large_answer_bytes: 40 << 20,
             large_answers_waiting: 256,
+            operating_limits: OperatingLimits::default(),
             large_answer_allowance: Duration::from_secs(30),
         }
     }

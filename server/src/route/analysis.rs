@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::analysis::{self, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
-use drillsweep_api::judgement::{Judgement, Line, OperatingLimits};
+use drillsweep_api::judgement::{Judgement, LimitChanges, Line};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use drillsweep_table::tables;
 use serde::{Deserialize, Deserializer};
@@ -112,12 +112,12 @@ pub(crate) async fn modes(
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DiagnosisQuery {
-    /// Changes of the default limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
+    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
     /// makes the point `over_limit`; `bit_stick_slip_severity`, `backward_whirl_fraction`, `forward_whirl_fraction` and `largest_shock_rate_10g`
     /// decide classes of their own.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
-    limits: OperatingLimits,
+    limits: LimitChanges,
 }
 
 /// Diagnosis of a point: class of its motion, and causes of its spectral lines
@@ -140,29 +140,48 @@ pub(crate) async fn diagnosis(
     Query(DiagnosisQuery { limits }): Query<DiagnosisQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
+    let limits = app.config.operating_limits.with(&limits);
     let point = point(&app, &id, n).await?;
     let tag = Tag::of(Format::Json, &("diagnosis", &point.key, &point.summary, &limits));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
+    let diagnosis = diagnose(&app, &caller, &id, point, &limits).await?;
+    Ok(tag.on(Json(diagnosis).into_response()))
+}
+
+/// Diagnosis of a point that has failed or has a result.
+///
+/// # Errors
+/// The point has neither, with its state.
+pub(super) async fn diagnose(
+    app: &App,
+    caller: &Caller,
+    id: &str,
+    point: PointDetail,
+    limits: &OperatingLimits,
+) -> Result<Diagnosis> {
     if let Some(error) = &point.row.error {
-        let judgement = Judgement::of_failure(&error.reason, &limits);
-        return Ok(tag.on(Json(Diagnosis { judgement, lines: Vec::new() }).into_response()));
+        let judgement = Judgement::of_failure(&error.reason, limits);
+        return Ok(Diagnosis { judgement, lines: Vec::new() });
     }
+    let n = point.row.ordinal;
     // Reports the state of a point without a result.
-    recordings::result_key(&app.store, &id, n).await?;
-    let lines = recordings::stored_if_any(&app.store, &id, n, tables::LINES.name).await?;
+    recordings::result_key(&app.store, id, n).await?;
+    let lines = recordings::stored_if_any(&app.store, id, n, tables::LINES.name).await?;
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let limits = limits.clone();
     let diagnose = move |_: &mut Work| {
         let lines = lines.map(|lines| lines.read(None)).transpose()?.and_then(|table| Line::of_table(&table));
         let summary = point.summary.unwrap_or_default();
         Ok(analysis::diagnosis(&point.scenario, &summary, lines, &limits)?)
     };
     let (diagnosis, _memory): (Diagnosis, _) = place.run(diagnose).await?;
-    Ok(tag.on(Json(diagnosis).into_response()))
+    Ok(diagnosis)
 }
 
-async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {
+/// A point with its scenario, without the names of its tables.
+pub(super) async fn point(app: &App, id: &str, n: u32) -> Result<PointDetail> {
     let Some(record) = app.store.point(id, n.into()).await? else {
         return Err(records::no_such_point(&app.store, id, n).await?);
     };

@@ -66,8 +66,13 @@ pub(crate) async fn export(
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let (held, allowance) = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);
-    let archive =
-        Archive { store: app.store, id: id.clone(), wanted: query.artifacts, handle: Handle::current() };
+    let archive = Archive {
+        store: app.store,
+        id: id.clone(),
+        wanted: query.artifacts,
+        limits: app.config.operating_limits.clone(),
+        handle: Handle::current(),
+    };
     beside(move || {
         let _held = held;
         let mut sink = Sink::new(sender, archive.handle.clone(), None, allowance);
@@ -91,6 +96,7 @@ struct Archive {
     store: Store,
     id: String,
     wanted: Option<Vec<String>>,
+    limits: OperatingLimits,
     handle: Handle,
 }
 
@@ -121,12 +127,7 @@ impl Archive {
 
     fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
         let table = verified
-            .points(
-                PointsTable::default().judged(OperatingLimits::default()),
-                &self.store,
-                &self.id,
-                &self.handle,
-            )
+            .points(PointsTable::default().judged(self.limits.clone()), &self.store, &self.id, &self.handle)
             .map_err(failed)?
             .finish();
         csv::write_to(&table, zip).map_err(io::Error::other)

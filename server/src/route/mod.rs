@@ -9,6 +9,7 @@ pub(crate) mod health;
 pub(crate) mod metrics;
 pub(crate) mod points;
 pub(crate) mod quantities;
+pub(crate) mod report;
 pub(crate) mod results;
 pub(crate) mod scenarios;
 pub(crate) mod session;

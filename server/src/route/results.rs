@@ -6,6 +6,7 @@ use axum::response::Response;
 use drillsweep_api::view::history::{self, Decimation, Extremes};
 use drillsweep_api::view::{node, orbit, spectrum};
 use drillsweep_chart as chart;
+use drillsweep_quantity::UnitSystem;
 use drillsweep_quantity::columns::{ROTATION_SPEED, TORQUE};
 use drillsweep_store::Store;
 use drillsweep_table::parquet::Cut;
@@ -98,7 +99,7 @@ pub(crate) async fn profile(
     let key = format!("{} {id}/{n}", tag.as_str());
     app.answer(format, &key, memory, move || {
         let table = profile.read(None)?;
-        let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title);
+        let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title, UnitSystem::Si);
         Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
     })
     .await
@@ -449,7 +450,7 @@ fn bit(
 }
 
 /// Rows with the extremes of the columns of a part of a history.
-fn rows_of_extremes(history: &Stored, part: &Cut<StoredFile>, most: usize) -> Result<Table> {
+pub(super) fn rows_of_extremes(history: &Stored, part: &Cut<StoredFile>, most: usize) -> Result<Table> {
     let fewest = Extremes::fewest(part.layout());
     if most < fewest {
         let detail = format!("with minmax must be {fewest} or more: two for each column besides time");
@@ -568,7 +569,7 @@ pub(crate) async fn orbit(
         let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
         let title = title_of_cut(&title, motion.cut_at);
         drop(motion);
-        let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom);
+        let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom, UnitSystem::Si);
         Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
     })
     .await

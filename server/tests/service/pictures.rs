@@ -74,10 +74,10 @@ async fn a_map_names_the_depth_of_a_node_of_one_mesh() {
             .to_owned()
     };
     let flow = over(json!({"flow_rate": {"values": [0.02, 0.03]}})).await;
-    assert!(flow.contains(">orbit radius rms at 57.7 m MD [mm]<"), "{flow}");
+    assert!(flow.contains(">lateral vibration at 57.7 m MD [mm]<"), "{flow}");
     // Of another mesh a number is another place.
     let mesh = over(json!({"mesh.drillpipe": {"values": [1.5, 1.2]}})).await;
-    assert!(mesh.contains(">orbit radius rms, node 49 [mm]<"), "{mesh}");
+    assert!(mesh.contains(">lateral vibration, node 49 [mm]<"), "{mesh}");
 }
 
 #[tokio::test]

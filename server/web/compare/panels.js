@@ -126,6 +126,28 @@ export function rangeOf(panels) {
   return [least - spare, largest + spare];
 }
 
+/**
+ * Lines of one picture in the order in which they are drawn: the one of the largest range first, below the others. The legend keeps their order.
+ * @param {any[]} traces
+ */
+export function largestFirst(traces) {
+  const ranges = new Map(traces.map((trace) => [trace, reachOf(trace.y)]));
+  return traces
+    .toSorted((a, b) => (ranges.get(b) ?? 0) - (ranges.get(a) ?? 0))
+    .map((trace) => ({ ...trace, legendrank: traces.indexOf(trace) + 1 }));
+}
+
+/** @param {(number | null)[]} values */
+function reachOf(values) {
+  let [least, largest] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (value === null) continue;
+    if (value < least) least = value;
+    if (value > largest) largest = value;
+  }
+  return largest - least;
+}
+
 /** @param {"x" | "y"} letter @param {number} order @returns {string} the axis' name in a layout */
 function axisOf(letter, order) {
   return `${letter}axis${order ? order + 1 : ""}`;

@@ -212,7 +212,7 @@ export async function drawEnds(place, comparison) {
  */
 function endPanel(point, { quantity, time, values }) {
   const trace = {
-    type: "scattergl",
+    type: "scatter",
     mode: "lines",
     x: time,
     y: shown(quantity, values),

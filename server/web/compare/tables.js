@@ -2,8 +2,9 @@
 
 import { get } from "../data/api.js";
 import { Biases } from "../data/biases.js";
+import { pairedModes } from "../data/mode-pairs.js";
 import { biasOver, recordedAs, STATISTICS } from "../data/statistics.js";
-import { say } from "../data/units.js";
+import { number, say } from "../data/units.js";
 import { accuracyFacts, accuracyReasons, costFacts } from "../point/about.js";
 import { fill, h } from "../ui/dom.js";
 import { each, noteNode } from "./comparison.js";
@@ -128,23 +129,44 @@ export async function drawEffects(place, comparison) {
   );
 }
 
-/** Modes about the equilibrium, from the lowest. @param {HTMLElement} place @param {Comparison} comparison */
+/** Modes about the equilibrium, from the lowest, those that are alike in a row. @param {HTMLElement} place @param {Comparison} comparison */
 export async function drawModes(place, comparison) {
   const found = await each(comparison, async (point) => {
     const { modes } = await get(`${point.path}/modes`, { to_hz: MODES_HZ }, comparison.drawing);
-    return modes
-      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.frequency_hz - b.frequency_hz)
-      .map((/** @type {any} */ mode, /** @type {number} */ index) => [
-        String(index + 1),
-        `${say("frequency", mode.frequency_hz)}, ${mode.kind}, ${mode.growth_rate > 0 ? "growing" : "decaying"}, most at ${say("measured_depth", mode.measured_depth)}`,
-      ]);
+    return /** @type {import("../data/mode-pairs.js").Mode[]} */ (modes);
   });
+  const rows = pairedModes(found.map(([, modes]) => modes));
   drawTable(
     place,
     "Modes",
     found.map(([point]) => point),
-    rowsOf(found),
+    rows.map((row, index) => {
+      const first = row.find((mode) => mode !== null);
+      return [String(index + 1), row.map((mode) => mode && sayMode(mode, mode === first ? null : first))];
+    }),
   );
+  if (found.length > 1) comparison.says.push(PAIRING);
+}
+
+/** Pairing of modes, in words. */
+const PAIRING =
+  "Modes in a row are alike in their kind of motion, in the depths with nine tenths of their energy and of their largest motion, and in frequency after the shift that all modes of their kind have in common; none is in two rows. In brackets, the shift of the frequency from the first point that has the mode.";
+
+/** @param {import("../data/mode-pairs.js").Mode} mode @param {import("../data/mode-pairs.js").Mode | null | undefined} first of its row, if another */
+function sayMode({ frequency_hz, kind, growth_rate, measured_depth }, first) {
+  const shift = first?.frequency_hz ? frequency_hz / first.frequency_hz - 1 : null;
+  return [
+    `${say("frequency", frequency_hz)}${shift === null ? "" : ` (${sayShift(shift)})`}`,
+    kind,
+    growth_rate > 0 ? "growing" : "decaying",
+    `most at ${say("measured_depth", measured_depth)}`,
+  ].join(", ");
+}
+
+/** @param {number} shift relative */
+function sayShift(shift) {
+  if (Math.abs(shift) < 5e-5) return "no shift";
+  return `${shift > 0 ? "+" : "−"}${number(100 * Math.abs(shift), 2)} %`;
 }
 
 /** Draws the errors of the numbers. @param {HTMLElement} place @param {Comparison} comparison */

@@ -114,11 +114,11 @@ function pointsTable(points, nameOf, takeOut) {
 
 /** @param {string} view @returns {HTMLElement} place of the view's picture, pictures or table */
 function placeOf(view) {
-  const { kind, name, build } = VIEWS[view];
+  const { kind, name } = VIEWS[view];
   if (kind === "several") return h("div", {});
   if (kind === "table")
     return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${name}, scrollable` });
-  return canvas(name, view, "tall", build);
+  return canvas(name, view, "tall");
 }
 
 /** A view of a comparison on the page: tabs, controls, the picture and its snippets. */

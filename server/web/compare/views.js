@@ -15,7 +15,7 @@ import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
-import { panelsInPlane, panelsOverTime } from "./panels.js";
+import { largestFirst, panelsInPlane, panelsOverTime } from "./panels.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
@@ -37,7 +37,6 @@ const SAME_END = 1e-6;
  * @property {boolean} [isWindowed] whether it is of a window
  * @property {boolean} [isOfNode] whether it is of a recorded node
  * @property {boolean} [hasTime] whether it is drawn over time, so that a window can be dragged across it
- * @property {import("../draw/library.js").Build} [build] of the drawing library, where the usual one does not do
  * @property {"table" | "several"} [kind] what it is where it is not one picture
  * @property {boolean} [isDocument] whether the service answers with a document in place of a table
  * @property {(place: HTMLElement, comparison: Comparison) => Promise<unknown>} draw
@@ -50,7 +49,6 @@ export const VIEWS = {
   history: {
     name: "Histories",
     table: "orbit",
-    build: "whole",
     isWindowed: true,
     isOfNode: true,
     hasTime: true,
@@ -59,7 +57,6 @@ export const VIEWS = {
   rotation: {
     name: "Rotation and torque",
     table: "history",
-    build: "whole",
     isWindowed: true,
     isOfNode: true,
     hasTime: true,
@@ -85,14 +82,13 @@ export const VIEWS = {
   bit: {
     name: "Rotation at bit and top",
     table: "history",
-    build: "whole",
     isWindowed: true,
     hasTime: true,
     draw: drawEnds,
   },
   string: { name: "Strings in motion", table: "snapshots", kind: "several", draw: drawStrings },
   contacts: { name: "Contacts over time", table: "snapshots", kind: "several", draw: drawContactMaps },
-  well: { name: "Well", table: "statics", build: "whole", draw: drawWells },
+  well: { name: "Well", table: "statics", kind: "several", draw: drawWells },
   energy: { name: "Energy", table: "energy", draw: drawEnergy },
   modes: { name: "Modes", table: "modes", kind: "table", isDocument: true, draw: drawModes },
   effects: { name: "Effects", table: "plan", kind: "table", isDocument: true, draw: drawEffects },
@@ -103,7 +99,7 @@ export const VIEWS = {
 /** @param {Compared} point @param {number[]} time @param {(number | null)[]} values @param {string} [dash] */
 function overTime(point, time, values, dash = point.dash) {
   return {
-    type: "scattergl",
+    type: "scatter",
     mode: "lines",
     name: point.name,
     showlegend: true,
@@ -299,7 +295,7 @@ async function drawSpectra(place, comparison) {
     found.map(([point, table]) => ({ table, name: String(point.number) })),
     comparison.query.get("amplitude") === "log",
   );
-  return draw(place, traces, { ...layout, shows: range }, comparison.signal);
+  return draw(place, largestFirst(traces), { ...layout, shows: range }, comparison.signal);
 }
 
 /** Highest frequency of compared spectra [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
@@ -364,10 +360,7 @@ async function drawAccount(place, comparison, account) {
   );
   return draw(
     place,
-    found.map(([, { point, time, values }]) => ({
-      ...overTime(point, time, scaled(values, size)),
-      type: "scatter",
-    })),
+    largestFirst(found.map(([, { point, time, values }]) => overTime(point, time, scaled(values, size)))),
     {
       shows: account,
       xaxis: { title: "time [s]" },

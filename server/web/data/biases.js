@@ -9,6 +9,9 @@ const FREQUENCIES = /^(ensemble_mean_)?line_frequency_hz/;
 /** Relative biases below this are said to be so. */
 const LEAST = 1e-4;
 
+/** Orbit sizes of recorded nodes, or their means over an ensemble. */
+const ORBIT_SIZE = /^(ensemble_mean_)?orbit_radius_rms_/;
+
 /**
  * A bias with its unit and sign.
  * @param {string} name of the quantity that is biased
@@ -85,6 +88,27 @@ export class Biases {
   at(name, ordinal) {
     const bias = this.#points.get(ordinal)?.[name];
     return typeof bias === "number" ? `bias ${sayBias(name, bias)}` : "";
+  }
+
+  /** Ordinals of the verified points. */
+  get verified() {
+    return [...this.#points.keys()];
+  }
+
+  /**
+   * Largest bias of orbit size at a point, or else at all verified points of the sweep; null without any.
+   * @param {number} ordinal
+   * @returns {import("./accuracy.js").Measured | null}
+   */
+  orbitSize(ordinal) {
+    const own = Object.entries(this.#points.get(ordinal) ?? {}).flatMap(([name, value]) =>
+      ORBIT_SIZE.test(name) && typeof value === "number" ? [{ value, name, verified: 1, isOwn: true }] : [],
+    );
+    const all = Object.entries(this.#statistics).flatMap(([name, { largest, verified }]) =>
+      ORBIT_SIZE.test(name) ? [{ value: largest, name, verified, isOwn: false }] : [],
+    );
+    const [worst] = (own.length ? own : all).sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+    return worst ?? null;
   }
 
   /**

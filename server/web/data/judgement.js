@@ -1,20 +1,11 @@
 // Classes of points by their loads, and the numbers that a point is judged by.
 
-import { say } from "./units.js";
+import { say, wordsOfColumn } from "./units.js";
 
-/** Classes of points, the most severe first. */
-export const CLASSES = [
-  "failed",
-  "buckled",
-  "stick_slip",
-  "backward_whirl",
-  "impacts",
-  "over_limit",
-  "growing",
-  "forward_whirl",
-  "quiet",
-  "not_judged",
-];
+/** Classes of points with their colours, the most severe first. */
+export function classes() {
+  return wordsOfColumn("class");
+}
 
 /** Finding of a diagnosis. @typedef {{class: string, sentence: string, evidence: Record<string, any>}} Finding */
 
@@ -22,8 +13,8 @@ export const CLASSES = [
 
 /** Rank of a class, 0 the most severe; an unknown class comes last. @param {string} name */
 export function rankOf(name) {
-  const rank = CLASSES.indexOf(name);
-  return rank < 0 ? CLASSES.length : rank;
+  const rank = classes().findIndex(({ word }) => word === name);
+  return rank < 0 ? classes().length : rank;
 }
 
 /** Name of a class in words. @param {string} name */

@@ -1,7 +1,6 @@
 // Labels and units of columns and of a scenario's fields.
 
 import { getNeeded } from "./api.js";
-import { FIELD_NAMES } from "./field-names.js";
 import { unitSystem } from "./settings.js";
 
 /**
@@ -12,6 +11,7 @@ import { unitSystem } from "./settings.js";
  * @property {string} [unit] the unit in which it is served
  * @property {{unit: string, size: number}} [shown]
  * @property {{unit: string, size: number}} [field]
+ * @property {{word: string, colour: string}[]} [words] of a column of texts that has few, in their order
  */
 
 /** @type {Record<string, Entry>} */
@@ -25,6 +25,8 @@ export async function loadQuantities() {
 /** Largest value of a quantity over all nodes of which a summary has it: a column that the page makes. */
 const LARGEST = /^largest_(.+)$/;
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
+/** Ratios that are shown in per cent. */
+const PER_CENT = /(^|_)error(_|$)|^relative_spread$|_spread$/;
 // A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
 const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
 
@@ -57,9 +59,9 @@ function parse(name) {
  * @param {string} name
  */
 export function label(name) {
-  const { entry, key = "", depth, node, window, variant } = parse(name);
+  const { entry, depth, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
-  const words = FIELD_NAMES[key] ?? entry.label;
+  const words = entry.label;
   if (variant === "largest") return `largest ${words} of all recorded nodes`;
   const parts = [variant ? `${variant.replaceAll("_", " ")} of ${words}` : words];
   if (depth) parts[0] += ` at ${depth} m`;
@@ -78,6 +80,11 @@ export function nodeOfColumn(name) {
   return node ?? (depth === undefined ? "" : `${depth}m`);
 }
 
+/** Words of a column of texts that has few, in their order. @param {string} name */
+export function wordsOfColumn(name) {
+  return registry[name]?.words ?? [];
+}
+
 /** @param {string} name */
 export function meaning(name) {
   const { entry } = parse(name);
@@ -90,8 +97,10 @@ export function meaning(name) {
  * @returns {{symbol: string, size: number}}
  */
 export function unit(name) {
-  const { entry, variant } = parse(name);
-  if (!entry?.unit || entry.unit === "1" || variant === "bias") return { symbol: "", size: 1 };
+  const { entry, key = "", variant } = parse(name);
+  const isRelative = variant === "bias" && entry?.unit !== "Hz";
+  if (isRelative || (entry?.unit === "1" && PER_CENT.test(key))) return { symbol: "%", size: 0.01 };
+  if (!entry?.unit || entry.unit === "1") return { symbol: "", size: 1 };
   const preferred = unitSystem() === "field" ? entry.field : entry.shown;
   return { symbol: written(preferred?.unit ?? entry.unit), size: preferred?.size ?? 1 };
 }
@@ -248,6 +257,31 @@ export function pathNames() {
 export function servedUnit(name) {
   const { entry } = parse(name);
   return entry?.unit && entry.unit !== "1" ? written(entry.unit) : "";
+}
+
+/**
+ * The unit in which numbers of a name are entered: that of the oil field if the reader chose field units, else the served one.
+ * @param {string} name
+ * @returns {{symbol: string, size: number}}
+ */
+export function inputUnit(name) {
+  const { entry } = parse(name);
+  return unitSystem() === "field" && entry?.field
+    ? readable(entry.field)
+    : { symbol: servedUnit(name), size: 1 };
+}
+
+/** All units of a name by their symbols, the served one first; none of a number without a unit. @param {string} name */
+export function unitsOf(name) {
+  const { entry } = parse(name);
+  if (!servedUnit(name)) return [];
+  const further = [entry?.shown, entry?.field].flatMap((one) => (one ? [readable(one)] : []));
+  return [{ symbol: servedUnit(name), size: 1 }, ...further];
+}
+
+/** @param {{unit: string, size: number}} unit */
+function readable({ unit: symbol, size }) {
+  return { symbol: written(symbol), size };
 }
 
 /** @param {string} symbol a unit in the registry's spelling, such as `N s/m2` */

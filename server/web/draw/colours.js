@@ -1,5 +1,7 @@
 // Colours of values on a scale, for what is not drawn by plotly; the same scale as there.
 
+import { classes } from "../data/judgement.js";
+
 /** Viridis at equal steps (van der Walt and Smith 2015). */
 const STOPS = [
   [68, 1, 84],
@@ -80,23 +82,12 @@ export function stateColour(word) {
   return getComputedStyle(document.documentElement).getPropertyValue(STATES[word]).trim();
 }
 
-/** Colours of classes of points, in both themes; Okabe and Ito's, with two darker ones. @type {Record<string, string>} */
-const OF_CLASSES = {
-  failed: "#882255",
-  buckled: "#7b5fd0",
-  stick_slip: "#d55e00",
-  backward_whirl: "#e69f00",
-  impacts: "#f0e442",
-  over_limit: "#cc79a7",
-  growing: "#56b4e9",
-  forward_whirl: "#0072b2",
-  quiet: "#009e73",
-  not_judged: "#757575",
-};
+/** Colour of an unknown class. */
+const UNKNOWN = "#757575";
 
-/** Colour of a class of points. @param {string} name */
+/** Colour of a class of points, in both themes. @param {string} name */
 export function classColour(name) {
-  return OF_CLASSES[name] ?? OF_CLASSES.not_judged;
+  return classes().find(({ word }) => word === name)?.colour ?? UNKNOWN;
 }
 
 /** Black or white, whichever contrasts more with the colour of a class. @param {string} name */
@@ -106,3 +97,17 @@ export function inkOnClass(name) {
 
 /** The scale as a gradient of CSS, from left to right. */
 export const GRADIENT = `linear-gradient(to right, ${Array.from({ length: 11 }, (_, step) => COLOURS[Math.round((step / 10) * (STEPS - 1))]).join(", ")})`;
+
+/**
+ * Colours of values by a scale as the drawing library takes it.
+ * @param {any} scale the name of the usual one, or parts of it with their colours
+ * @param {number} least @param {number} largest
+ * @returns {(value: number) => string}
+ */
+export function colourScale(scale, least, largest) {
+  if (!Array.isArray(scale)) return (value) => colourOf(value, [least, largest]);
+  return (value) => {
+    const part = (value - least) / (largest - least || 1);
+    return scale.findLast(([from]) => from <= part)?.[1] ?? scale[0][1];
+  };
+}

@@ -30,9 +30,8 @@ export function seenDownhole(u, v, lowSide) {
  */
 export function orbitTrace(table, lowSide, line, name) {
   const { across, up } = seenDownhole(table.columns.u, table.columns.v, lowSide);
-  const isLong = across.length > 20_000;
   return {
-    type: isLong ? "scattergl" : "scatter",
+    type: "scatter",
     mode: "lines",
     x: shown("radius", across),
     y: shown("radius", up),
@@ -144,6 +143,40 @@ export function namedLines(table) {
   return (table.attributes.peaks ?? [])
     .filter((/** @type {any} */ peak) => peak.whirl !== "offset" && peak.is_resolved !== false)
     .slice(0, NAMED);
+}
+
+/**
+ * Marks at the named lines of a spectrum, at their frequencies and amplitudes interpolated between its samples.
+ * @param {any} table
+ * @param {any} marker
+ */
+export function peaksTrace(table, marker) {
+  const lines = namedLines(table);
+  return {
+    type: "scatter",
+    mode: "markers",
+    x: lines.map(({ frequency }) => frequency),
+    y: shown(
+      "amplitude",
+      lines.map(({ amplitude }) => amplitude),
+    ),
+    marker: { size: 6, ...marker },
+    showlegend: false,
+    hovertemplate: "line at %{x:.3~f} Hz: %{y:.4~g}<extra></extra>",
+  };
+}
+
+/**
+ * Visibility of the wall in the picture of an orbit.
+ * @param {{xaxis: {range: number[]}, yaxis: {range: number[]}}} layout of the orbit, in the units in which it is shown
+ * @param {number} clearance [m]
+ */
+export function isWallSeen({ xaxis, yaxis }, clearance) {
+  const radius = Number(shown("radius", [clearance])[0]);
+  const nearest = (/** @type {number[]} */ [from, to]) => (from > 0 ? from : to < 0 ? -to : 0);
+  const farthest = (/** @type {number[]} */ [from, to]) => Math.max(Math.abs(from), Math.abs(to));
+  const [x, y] = [xaxis.range, yaxis.range];
+  return Math.hypot(nearest(x), nearest(y)) <= radius && radius <= Math.hypot(farthest(x), farthest(y));
 }
 
 /**

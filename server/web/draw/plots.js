@@ -4,10 +4,11 @@ import { isWaiting } from "../data/api.js";
 import { settings, theme } from "../data/settings.js";
 import { THOUSANDS } from "../data/units.js";
 import { h } from "../ui/dom.js";
+import { Cloud, spanned } from "./cloud.js";
 import { colourOf } from "./colours.js";
-import { fetchAhead, isFlat, library, libraryAtHand } from "./library.js";
+import { fetchAhead, library } from "./library.js";
 import { sketch } from "./sketch.js";
-import { forgetZoom, keepZoom, rested, wholeOf, zoomed } from "./zoom.js";
+import { forgetZoom, keepZoom, wholeOf, zoomed } from "./zoom.js";
 
 /** Lines that differ, for colour-blind readers too (after Okabe and Ito); lighter on the dark theme. */
 const PALETTES = {
@@ -30,11 +31,15 @@ const DARK_END = 0.3;
 export function lineScale() {
   return theme() === "dark" ? BRIGHT : SCALE;
 }
+/** Colour of a part of the scale without its dark end. @param {number} part */
+const bright = (part) => colourOf(DARK_END + (1 - DARK_END) * part, [0, 1]);
 /** @type {[number, string][]} */
-const BRIGHT = Array.from({ length: 11 }, (_, step) => [
-  step / 10,
-  colourOf(DARK_END + (1 - DARK_END) * (step / 10), [0, 1]),
-]);
+const BRIGHT = Array.from({ length: 11 }, (_, step) => [step / 10, bright(step / 10)]);
+
+/** Colours by parts of that scale, for what the page draws itself. @returns {(part: number) => string} */
+export function inkedScale() {
+  return theme() === "dark" ? bright : (part) => colourOf(part, [0, 1]);
+}
 
 /** @returns {{text: string, soft: string, line: string, panel: string}} colours of the theme */
 export function inks() {
@@ -48,12 +53,11 @@ export function inks() {
  * @param {string} name what screen readers say and files are called
  * @param {string} key what the link calls it, where it holds how the picture is zoomed
  * @param {string} [size] `low` or `tall`
- * @param {import("./library.js").Build} [build] of the drawing library that it will need
  */
-export function canvas(name, key, size = "", build = "flat") {
+export function canvas(name, key, size = "") {
   const place = h("div", { class: `plot ${size}`, role: "figure", "aria-label": name, "data-zoom": key });
   // While the data come.
-  fetchAhead(build, place);
+  fetchAhead(place);
   return place;
 }
 
@@ -67,8 +71,8 @@ const REST_MS = 10,
  * @type {WeakMap<HTMLElement, {layout: any, axes: string, whole: Record<string, any>}>}
  */
 const drawn = new WeakMap();
-/** Builds that drew the pictures. @type {WeakMap<HTMLElement, any>} */
-const drawers = new WeakMap();
+/** Dots of pictures. @type {WeakMap<HTMLElement, Cloud>} */
+const clouds = new WeakMap();
 /** Requested drawings of each place: all but the newest are dropped. @type {WeakMap<HTMLElement, number>} */
 const asked = new WeakMap();
 /** Pictures whose layout the page changes itself. @type {WeakSet<HTMLElement>} */
@@ -77,7 +81,7 @@ const adjusted = new WeakSet();
 /**
  * Draws, or redraws, a picture; zoomed as the link says, unless its axes are others than when it was drawn last.
  * @param {HTMLElement} place made by `canvas`
- * @param {any[]} traces
+ * @param {any[]} traces as plotly takes them, and those of `Cloud`
  * @param {any} layout what differs from the common layout; the `quantity` of an axis is what it shows, where that has a unit, its
  *   `size` the number of served units in one that is shown, where that is not the usual one, and `shows` is what a change of takes the zoom back, beside that of the axes
  * @param {AbortSignal} signal of the view: the picture is taken down with it
@@ -88,23 +92,41 @@ export async function draw(place, traces, layout, signal) {
   asked.set(place, mine);
   await laidOut(place, signal);
   if (signal.aborted) return place;
-  const complete = merged(common(), layout, traces);
-  // A sketch of a WebGL picture takes as long as the picture.
-  if (!drawn.has(place) && (isFlat(traces) || !libraryAtHand(traces)))
-    await sketched(place, traces, complete, signal);
-  const Plotly = await library(traces);
+  const spanning = spanned(traces);
+  const complete = merged(common(), layout, spanning);
+  const isFirst = !drawn.has(place);
+  if (isFirst) await sketched(place, traces, complete, signal);
+  const Plotly = await library();
   // A newer drawing takes the place of this one.
   if (signal.aborted || asked.get(place) !== mine) return place;
-  const before = drawers.get(place);
-  // One build cannot change the other's picture.
-  if (before && before !== Plotly) before.purge(place);
-  drawers.set(place, Plotly);
-  await Plotly.react(place, traces, complete, config(Plotly, place, layout));
+  await Plotly.react(place, spanning, complete, config(Plotly, place, layout));
   for (const rough of place.querySelectorAll(".sketch")) rough.remove();
-  await zoom(Plotly, place, layout);
-  if (before !== Plotly) followZoom(place);
-  if (!before) attach(place, signal);
+  await zoom(place, layout);
+  await paintCloud(place, traces);
+  if (isFirst) {
+    followZoom(place);
+    attach(Plotly, place, signal);
+  }
   return place;
+}
+
+/** Paints the dots of a picture, where it has or had some. @param {HTMLElement} place @param {any[]} traces */
+async function paintCloud(place, traces) {
+  if (!clouds.has(place) && !traces.some(({ type }) => type === "dots")) return;
+  const cloud = clouds.get(place) ?? new Cloud(place);
+  if (!clouds.has(place))
+    /** @type {any} */ (place).on("plotly_relayout", () => {
+      if (!adjusted.has(place)) void cloudAdjusted(place);
+    });
+  clouds.set(place, cloud);
+  cloud.show(traces);
+  await cloudAdjusted(place);
+}
+
+/** Paints dots by the axes as they are. @param {HTMLElement} place */
+async function cloudAdjusted(place) {
+  const cloud = clouds.get(place);
+  if (cloud && place.isConnected) await adjust(place, { images: cloud.paint(inks().soft) });
 }
 
 /**
@@ -145,10 +167,8 @@ function painted() {
 
 /** Keeps in the link how the reader zooms a picture. @param {HTMLElement} place */
 function followZoom(place) {
-  /** @type {any} */ (place).on("plotly_relayout", async (/** @type {any} */ event) => {
-    if (adjusted.has(place) || !Object.keys(event).some((name) => /^([xy]axis|scene\.camera)/.test(name)))
-      return;
-    await rested(place);
+  /** @type {any} */ (place).on("plotly_relayout", (/** @type {any} */ event) => {
+    if (adjusted.has(place) || !Object.keys(event).some((name) => /^[xy]axis/.test(name))) return;
     const known = drawn.get(place);
     if (known && place.isConnected) keepZoom(keyOf(place), place, known.layout, known.whole);
   });
@@ -156,12 +176,13 @@ function followZoom(place) {
 
 /**
  * Has a picture follow the size of its place, and takes it down with its view.
+ * @param {any} Plotly
  * @param {HTMLElement} place
  * @param {AbortSignal} signal
  */
-function attach(place, signal) {
+function attach(Plotly, place, signal) {
   const observer = new ResizeObserver(
-    () => place.isConnected && place.clientWidth > 0 && drawers.get(place).Plots.resize(place),
+    () => place.isConnected && place.clientWidth > 0 && Plotly.Plots.resize(place),
   );
   observer.observe(place);
   signal.addEventListener(
@@ -169,7 +190,7 @@ function attach(place, signal) {
     () => {
       observer.disconnect();
       // After the next view has taken the place of this one.
-      setTimeout(() => drawers.get(place).purge(place), 1000);
+      setTimeout(() => Plotly.purge(place), 1000);
     },
     { once: true },
   );
@@ -177,11 +198,10 @@ function attach(place, signal) {
 
 /**
  * Zooms a picture that has just been drawn as a whole.
- * @param {any} Plotly
  * @param {HTMLElement} place
  * @param {any} layout
  */
-async function zoom(Plotly, place, layout) {
+async function zoom(place, layout) {
   const axes = JSON.stringify([
     layout.shows,
     ...Object.keys(layout)
@@ -223,7 +243,7 @@ export function laidOut(place, signal) {
  */
 export async function adjust(place, changes) {
   if (!place.classList.contains("js-plotly-plot")) return;
-  const Plotly = drawers.get(place);
+  const Plotly = await library();
   adjusted.add(place);
   await Plotly.relayout(place, changes);
   adjusted.delete(place);

@@ -1,10 +1,10 @@
 // A flat picture on a canvas: what is seen until the drawing library has been compiled, drawn from what the library is given. It has axes,
 // values, colours and names, and does not answer to the mouse.
 
-import { number } from "../data/units.js";
-import { colourOf } from "./colours.js";
+import { colourScale } from "./colours.js";
+import { roundValues, tickText } from "./ticks.js";
 
-const KINDS = new Set(["scatter", "scattergl", "bar", "heatmap", "contour"]);
+const KINDS = new Set(["scatter", "dots", "bar", "heatmap", "contour"]);
 /** Pixels between two ticks, about. */
 const APART = { x: 90, y: 45 };
 /** Part of a range that stays free beyond its values. */
@@ -212,28 +212,13 @@ function ticksOf(axis, length = Math.abs(axis.pixels[1] - axis.pixels[0])) {
     );
     return values
       .filter((value) => Math.log10(value) >= low && Math.log10(value) <= high)
-      .map((value) => ({ value, text: written(value) }));
+      .map((value) => ({ value, text: tickText(value) }));
   }
-  return round(low, high, axis.own.nticks ?? Math.max(2, length / APART[axis.isAcross ? "x" : "y"])).map(
-    (value) => ({ value, text: written(value) }),
-  );
-}
-
-/** Round values between two. @param {number} low @param {number} high @param {number} count at most, about */
-function round(low, high, count) {
-  const rough = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5].find((digit) => digit * power >= rough) ?? 10);
-  const first = Math.ceil(low / step - 1e-9);
-  return Array.from(
-    { length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) },
-    (_, index) => (first + index) * step,
-  );
-}
-
-/** @param {number} value */
-function written(value) {
-  return number(Number(value.toPrecision(6)), 6).replace("-", "−");
+  return roundValues(
+    low,
+    high,
+    axis.own.nticks ?? Math.max(2, length / APART[axis.isAcross ? "x" : "y"]),
+  ).map((value) => ({ value, text: tickText(value) }));
 }
 
 /** The lines of a title. @param {Axis} axis @returns {string[]} */
@@ -306,7 +291,7 @@ function drawTrace(pen, trace, x, y, bars) {
 
 /** @param {CanvasRenderingContext2D} pen @param {any} trace @param {Axis} x @param {Axis} y */
 function drawCells(pen, trace, x, y) {
-  const colour = colours(trace.colorscale, trace.zmin, trace.zmax);
+  const colour = colourScale(trace.colorscale, trace.zmin, trace.zmax);
   const ends = (/** @type {Axis} */ axis, /** @type {any[]} */ values, /** @type {number} */ cells) =>
     edges(
       [...values].map((value) => at(axis, value)),
@@ -373,11 +358,15 @@ function drawLine(pen, trace, x, y) {
   const finite = values?.filter((value) => typeof value === "number") ?? [];
   const ends = (/** @type {(a: number, b: number) => number} */ of) =>
     finite.reduce((a, b) => of(a, b), finite[0]);
-  const colour = colours(colorscale, cmin ?? ends(Math.min), cmax ?? ends(Math.max));
+  const colour = colourScale(colorscale, cmin ?? ends(Math.min), cmax ?? ends(Math.max));
   for (let index = 0; index < count; index += 1) {
     if (!has(index) || (values && values[index] === null)) continue;
     const own = values && (typeof values[index] === "number" ? colour(values[index]) : values[index]);
     pen.fillStyle = pen.strokeStyle = own ?? color ?? trace.line?.color;
+    if (trace.type === "dots") {
+      pen.fillRect(at(x, trace.x[index]) - size / 2, at(y, trace.y[index]) - size / 2, size, size);
+      continue;
+    }
     pen.beginPath();
     pen.arc(at(x, trace.x[index]), at(y, trace.y[index]), size / 2, 0, 2 * Math.PI);
     if (symbol === "circle-open") pen.stroke();
@@ -394,19 +383,6 @@ function dashes(dash) {
   );
 }
 
-/**
- * @param {any} scale the name of the usual one, or parts of it with their colours
- * @param {number} least @param {number} largest
- * @returns {(value: number) => string}
- */
-function colours(scale, least, largest) {
-  if (!Array.isArray(scale)) return (value) => colourOf(value, [least, largest]);
-  return (value) => {
-    const part = (value - least) / (largest - least || 1);
-    return scale.findLast(([from]) => from <= part)?.[1] ?? scale[0][1];
-  };
-}
-
 /** @param {CanvasRenderingContext2D} pen @param {any} trace @param {any} bar @param {Frame} frame @param {{text: string}} inks */
 function drawBar(pen, trace, bar, frame, { text: ink }) {
   const values = trace.z ? trace.z.flat() : trace.marker.color;
@@ -420,7 +396,7 @@ function drawBar(pen, trace, bar, frame, { text: ink }) {
     trace.marker?.cmax ??
     finite.reduce((/** @type {number} */ a, /** @type {number} */ b) => Math.max(a, b), -Infinity);
   if (!(least <= largest)) return;
-  const colour = colours(trace.colorscale ?? trace.marker?.colorscale, least, largest);
+  const colour = colourScale(trace.colorscale ?? trace.marker?.colorscale, least, largest);
   const left = frame.right + 16;
   const height = frame.bottom - frame.top;
   const up = (/** @type {number} */ value) =>
@@ -432,8 +408,8 @@ function drawBar(pen, trace, bar, frame, { text: ink }) {
   pen.fillStyle = ink;
   pen.textAlign = "left";
   pen.textBaseline = "middle";
-  const ticks = bar.tickvals ?? round(least, largest, Math.max(2, height / APART.y));
-  const texts = bar.ticktext ?? ticks.map(written);
+  const ticks = bar.tickvals ?? roundValues(least, largest, Math.max(2, height / APART.y));
+  const texts = bar.ticktext ?? ticks.map(tickText);
   ticks.forEach((/** @type {number} */ value, /** @type {number} */ index) =>
     pen.fillText(texts[index], left + BAR + 5, up(value)),
   );

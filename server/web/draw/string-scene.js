@@ -18,6 +18,8 @@ const WIDTHS = { drillpipe: 3.5, tool_joint: 7, collar: 5.5, stabilizer: 10, bit
 const CONE = 9;
 /** Radius of a dot. */
 const DOT = 4.5;
+/** Greatest distance of the pointer from a node that is read [pixels]. */
+const NEAR = 14;
 
 /**
  * A string in its hole, as it is drawn.
@@ -29,15 +31,21 @@ const DOT = 4.5;
  * @property {number} factor by which the distance from the axis is multiplied
  * @property {(node: number) => [number, number]} place u and v of a node [m]
  * @property {((node: number) => [number, number]) | null} rest u and v of a node at rest [m]
- * @property {(node: number) => number} value that colours it
+ * @property {(node: number) => number | null} value that colours it; a node without one has the colour of text
+ * @property {string} [colour] of all of the string, in place of its values
  * @property {[number, number]} range of the colours
+ * @property {(node: number) => number} [turn] of the string at a node [rad], which a stripe along it and a dial show
  * @property {(node: number) => boolean} [isMarked] whether a node has a dot
  * @property {import("../data/string-parts.js").Kind[]} kinds part of the string at each element
+ * @property {Scene[]} [fits] scenes in pictures of the same size that are drawn to the scale at which each of them fits
  */
 
 /** @typedef {import("./viewpoint.js").View} View */
 /** @typedef {import("./svg-pen.js").Pen} Pen */
 /** @typedef {(place: Vector) => number[]} Project */
+
+/** Keys of a picture. */
+export const KEYS = "ArrowLeft ArrowRight ArrowUp ArrowDown + - Home";
 
 /** A picture that is turned by dragging or the arrow keys, and brought nearer by the wheel or + and -. */
 export class StringScene {
@@ -68,7 +76,7 @@ export class StringScene {
       role: "application",
       tabindex: "0",
       "aria-label": name,
-      "aria-keyshortcuts": "Space ArrowLeft ArrowRight ArrowUp ArrowDown + - Home",
+      "aria-keyshortcuts": KEYS,
     });
     this.#screen = /** @type {CanvasRenderingContext2D} */ (this.element.getContext("2d"));
     const observer = new ResizeObserver(() => this.turned());
@@ -108,6 +116,31 @@ export class StringScene {
     drawAll(this.#screen, this.#scene, this.#view, width, height);
     this.#drawn += 1;
     canvas.dataset.drawn = String(this.#drawn);
+  }
+
+  /**
+   * Reports the node next to the pointer, while nothing is dragged.
+   * @param {(node: number | null) => void} read
+   */
+  onNode(read) {
+    this.element.addEventListener("pointermove", ({ offsetX, offsetY }) => {
+      if (!this.#held) read(this.#nodeAt(offsetX, offsetY));
+    });
+    this.element.addEventListener("pointerleave", () => read(null));
+  }
+
+  /** @param {number} x @param {number} y */
+  #nodeAt(x, y) {
+    if (!this.#scene) return null;
+    const { clientWidth, clientHeight } = this.element;
+    const project = projection(this.#scene, this.#view, clientWidth, clientHeight);
+    const [first] = this.#scene.stretch;
+    let [best, least] = [/** @type {number | null} */ (null), NEAR];
+    placesOf(this.#scene, this.#scene.place, project).forEach(([right, down], index) => {
+      const apart = Math.hypot(right - x, down - y);
+      if (apart < least) [best, least] = [first + index, apart];
+    });
+    return best;
   }
 
   /** Draws with another pen, as a file has it. @param {Pen} pen */
@@ -186,16 +219,36 @@ function drawAll(pen, scene, view, width, height) {
   drawDepths(pen, scene, project);
   if (scene.rest) drawLine(pen, scene, scene.rest, project);
   drawString(pen, scene, project);
+  if (scene.turn) drawDial(pen, scene.stretch.map(scene.turn), width);
   drawCompass(pen, view, height);
 }
 
 /**
  * Projection from space to the picture: without perspective, and with all of the shown part in it.
+ * Scenes that are to fit together have one scale.
  * @param {Scene} scene @param {View} view @param {number} width @param {number} height
  * @returns {Project}
  */
-function projection({ frames, stretch: [first, last], clearance, factor }, view, width, height) {
+function projection(scene, view, width, height) {
   const seen = seenFrom(view);
+  const [left, right, top, bottom] = boundsOf(scene, seen);
+  const sizes = (scene.fits ?? [scene]).map((one) => {
+    const [from, to, upper, lower] = boundsOf(one, seen);
+    return Math.min(width / (to - from || 1), height / (lower - upper || 1));
+  });
+  const size = 0.92 * view.size * Math.min(...sizes);
+  const [x0, y0] = [(left + right) / 2, (top + bottom) / 2];
+  return (place) => {
+    const [x, y] = seen(place);
+    return [width * (0.5 + view.right) + size * (x - x0), height * (0.5 + view.down) + size * (y - y0)];
+  };
+}
+
+/**
+ * Bounds of the shown part of a hole as it is seen: left, right, top and bottom [m].
+ * @param {Scene} scene @param {(place: Vector) => [number, number]} seen
+ */
+function boundsOf({ frames, stretch: [first, last], clearance, factor }, seen) {
   const bounds = [Infinity, -Infinity, Infinity, -Infinity];
   for (let node = first; node <= last; node += 1) {
     const [x, y] = seen(frames.axis[node]);
@@ -205,13 +258,18 @@ function projection({ frames, stretch: [first, last], clearance, factor }, view,
     bounds[2] = Math.min(bounds[2], y - room);
     bounds[3] = Math.max(bounds[3], y + room);
   }
-  const size =
-    0.92 * view.size * Math.min(width / (bounds[1] - bounds[0] || 1), height / (bounds[3] - bounds[2] || 1));
-  const [x0, y0] = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
-  return (place) => {
-    const [x, y] = seen(place);
-    return [width * (0.5 + view.right) + size * (x - x0), height * (0.5 + view.down) + size * (y - y0)];
-  };
+  return bounds;
+}
+
+/**
+ * Places of the shown nodes in the picture.
+ * @param {Scene} scene @param {(node: number) => [number, number]} place @param {Project} project
+ */
+function placesOf({ frames, stretch: [first, last], factor }, place, project) {
+  return Array.from({ length: last - first + 1 }, (_, index) => {
+    const [u, v] = place(first + index);
+    return project(offset(frames, first + index, factor * u, factor * v));
+  });
 }
 
 /** Corners of a ring of the hole about a node, in space. @param {Scene} scene @param {number} node @returns {Vector[]} */
@@ -313,13 +371,11 @@ function besideHole(scene, node, part, project) {
 }
 
 /** @param {Pen} pen @param {Scene} scene @param {(node: number) => [number, number]} place @param {Project} project */
-function drawLine(pen, { frames, stretch: [first, last], factor }, place, project) {
+function drawLine(pen, scene, place, project) {
   pen.lineWidth = 1.5;
   pen.strokeStyle = inks().soft;
-  path(pen, first, last, (node) => {
-    const [u, v] = place(node);
-    return project(offset(frames, node, factor * u, factor * v));
-  });
+  const places = placesOf(scene, place, project);
+  path(pen, 0, places.length - 1, (index) => places[index]);
 }
 
 /** @param {Pen} pen @param {Scene} scene @param {Project} project */
@@ -327,17 +383,11 @@ function drawString(pen, scene, project) {
   const {
     frames,
     stretch: [first, last],
-    factor,
     place,
-    value,
-    range,
     isMarked,
     kinds,
   } = scene;
-  const places = Array.from({ length: last - first + 1 }, (_, index) => {
-    const [u, v] = place(first + index);
-    return project(offset(frames, first + index, factor * u, factor * v));
-  });
+  const places = placesOf(scene, place, project);
   const strokes = (/** @type {number} */ wider, /** @type {(node: number) => string} */ colour) => {
     for (let index = 1; index < places.length; index += 1) {
       const node = first + index;
@@ -350,13 +400,59 @@ function drawString(pen, scene, project) {
   // Whatever its colour, it stands out from the ground of either theme.
   const ink = inks().soft;
   strokes(2.5, () => ink);
-  strokes(0, (node) => colourOf(value(node), range));
+  strokes(0, (node) => paintOf(scene, node));
   pen.lineCap = "butt";
-  if (last === frames.axis.length - 1) drawBit(pen, places, colourOf(value(last), range));
-  const dots = places.flatMap(([x, y], index) =>
-    isMarked?.(first + index) ? [[x, y, value(first + index)]] : [],
-  );
-  drawDots(pen, dots, range);
+  if (scene.turn) drawStripe(pen, scene, scene.turn, places);
+  if (last === frames.axis.length - 1) drawBit(pen, places, paintOf(scene, last));
+  places.forEach((at, index) => isMarked?.(first + index) && drawDot(pen, at, paintOf(scene, first + index)));
+}
+
+/** Draws a stripe that is painted along the string, where it faces the reader. @param {Pen} pen @param {Scene} scene @param {(node: number) => number} turn @param {number[][]} places */
+function drawStripe(pen, { stretch: [first], kinds }, turn, places) {
+  pen.lineWidth = 1.5;
+  pen.strokeStyle = inks().panel;
+  for (let index = 1; index < places.length; index += 1) {
+    const angle = turn(first + index);
+    if (Math.cos(angle) <= 0) continue;
+    const [[x0, y0], [x1, y1]] = [places[index - 1], places[index]];
+    const aside =
+      (0.4 * WIDTHS[kinds[first + index - 1]] * Math.sin(angle)) / (Math.hypot(x1 - x0, y1 - y0) || 1);
+    const ends = [
+      [x0 - aside * (y1 - y0), y0 + aside * (x1 - x0)],
+      [x1 - aside * (y1 - y0), y1 + aside * (x1 - x0)],
+    ];
+    path(pen, 0, 1, (end) => ends[end]);
+  }
+}
+
+/** Radius of the dial, and its distance from the corner [pixels]. */
+const [DIAL, ASIDE] = [20, 34];
+
+/** Draws the turn of the upper and of the lower end as hands of a dial. @param {Pen} pen @param {number[]} turns [rad] @param {number} width */
+function drawDial(pen, [upper, lower], width) {
+  const { text, soft } = inks();
+  const [x, y] = [width - ASIDE, ASIDE];
+  pen.lineWidth = 1;
+  pen.strokeStyle = soft;
+  pen.beginPath();
+  pen.arc(x, y, DIAL, 0, 2 * Math.PI);
+  pen.stroke();
+  const hands = [
+    { turn: upper, thick: 1.5, ink: soft },
+    { turn: lower, thick: 3.5, ink: text },
+  ];
+  for (const { turn, thick, ink } of hands) {
+    [pen.lineWidth, pen.strokeStyle] = [thick, ink];
+    const tip = [x + DIAL * Math.sin(turn), y - DIAL * Math.cos(turn)];
+    path(pen, 0, 1, (end) => (end ? tip : [x, y]));
+  }
+}
+
+/** Colour of the string at a node. @param {Scene} scene @param {number} node */
+function paintOf({ value, range, colour }, node) {
+  if (colour) return colour;
+  const own = value(node);
+  return own === null ? inks().text : colourOf(own, range);
 }
 
 /** Draws the bit as a cone at the end of the string. @param {Pen} pen @param {number[][]} places @param {string} colour */
@@ -378,17 +474,15 @@ function drawBit(pen, places, colour) {
   pen.stroke();
 }
 
-/** @param {Pen} pen @param {number[][]} dots places and values @param {[number, number]} range of the colours */
-function drawDots(pen, dots, range) {
+/** @param {Pen} pen @param {number[]} place @param {string} colour */
+function drawDot(pen, [x, y], colour) {
   pen.lineWidth = 1;
   pen.strokeStyle = inks().panel;
-  for (const [x, y, value] of dots) {
-    pen.fillStyle = colourOf(value, range);
-    pen.beginPath();
-    pen.arc(x, y, DOT, 0, 2 * Math.PI);
-    pen.fill();
-    pen.stroke();
-  }
+  pen.fillStyle = colour;
+  pen.beginPath();
+  pen.arc(x, y, DOT, 0, 2 * Math.PI);
+  pen.fill();
+  pen.stroke();
 }
 
 /** Draws a line through places. @param {Pen} pen @param {number} first @param {number} last @param {(index: number) => number[]} at */

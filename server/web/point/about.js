@@ -3,6 +3,7 @@
 import { address, get } from "../data/api.js";
 import { bytes, duration, label, meaning, moment, number, say } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
+import { AccuracyCost } from "./accuracy-cost.js";
 
 /** Files that are tables, which are served as CSV, too. */
 const TABLES = ["profile", "statics", "history", "lines", "contacts", "loads", "energy", "snapshots"];
@@ -15,10 +16,12 @@ export function about(context) {
   const { point, path, signal } = context;
   const effects = loadingPanel("Effects");
   const files = loadingPanel("Downloads");
+  const cost = new AccuracyCost(context);
 
   async function drawEffects() {
+    let plan;
     try {
-      const plan = await get(`${path}/plan`, {}, signal);
+      plan = await get(`${path}/plan`, {}, signal);
       fill(effects, h("h2", {}, "Effects"), effectsTable(plan));
     } catch (error) {
       if (signal.aborted) return;
@@ -28,6 +31,7 @@ export function about(context) {
         h("p", { class: "soft" }, String(error instanceof Error ? error.message : error)),
       );
     }
+    if (plan) await cost.draw(plan);
   }
 
   async function drawFiles() {
@@ -46,6 +50,7 @@ export function about(context) {
       "div",
       { class: "half" },
       accuracyPart(context),
+      cost.element,
       factsPart("What it cost", costFacts(point)),
       effects,
       files,
@@ -53,7 +58,7 @@ export function about(context) {
       provenancePart(point),
     ),
     draw: async () => {
-      await Promise.all([drawEffects(), drawFiles()]);
+      await Promise.all([cost.draw(), drawEffects(), drawFiles()]);
     },
     request: () => ({
       asked: [

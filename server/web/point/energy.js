@@ -1,6 +1,6 @@
 // Energy by account: what was put in, where it went, and what the ledger misses.
 
-import { label, say, suitedUnit } from "../data/units.js";
+import { label, say, unit } from "../data/units.js";
 import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
 
@@ -8,10 +8,10 @@ const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
 const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
 const HELD = ["kinetic", "stored"];
 
-/** Widths of a number beside a bar and of the accounts' names, about [pixels]; of a place that has no size yet, the usual one. */
-const [BESIDE, NAMES, USUAL] = [64, 190, 1000];
-/** Part of the bars' width that is given to numbers at an end, at most. */
-const MOST_BESIDE = 0.3;
+/** Energies below this part of the largest are not drawn. */
+const LEAST = 1e-9;
+/** Width of a bar [pixels]. */
+const BAR = 13;
 /** All accounts, and what the ledger misses. */
 export const ACCOUNTS = [...SUPPLIED, ...DISSIPATED, ...HELD, "residual"];
 
@@ -34,6 +34,36 @@ function groupOf(name) {
   return DISSIPATED.includes(name) ? 1 : 2;
 }
 
+/** Name of an account with its sign in words. @param {string} name @param {number} change */
+function wordsOf(name, change) {
+  if (groupOf(name) < 2) return label(name);
+  return `${name === "kinetic" ? "kinetic" : "stored"} energy ${change < 0 ? "lost" : "gained"}`;
+}
+
+/**
+ * Accounts by the size of their change, the largest first.
+ * @param {any} columns
+ * @returns {{name: string, group: number, change: number, words: string}[]}
+ */
+export function sortedAccounts(columns) {
+  const { accounts, change } = ledger(columns);
+  return accounts
+    .map((name) => ({ name, group: groupOf(name), change: change(name), words: wordsOf(name, change(name)) }))
+    .sort((a, b) => Math.abs(b.change) - Math.abs(a.change));
+}
+
+/**
+ * Power of ten at which a logarithmic scale of energies begins.
+ * @param {number[]} changes
+ * @returns {number}
+ */
+export function floorOf(changes) {
+  const sizes = changes.map(Math.abs).filter((size) => size > 0);
+  const largest = sizes.reduce((a, b) => Math.max(a, b), 0) || 1;
+  const least = sizes.filter((size) => size > LEAST * largest).reduce((a, b) => Math.min(a, b), largest);
+  return Math.ceil(Math.log10(least)) - 1;
+}
+
 /**
  * @param {import("./part.js").PointContext} context
  * @returns {import("./part.js").PointPart}
@@ -48,7 +78,7 @@ export function energy(context) {
     const last = columns.time.length - 1;
     fill(
       caption,
-      `Over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of the energy that it counts: the error of the integration.`,
+      `The change of each account over ${say("time", columns.time[last])}. The ledger misses ${say("residual", columns.residual?.[last])}, ${say("energy_residual_ratio", context.point.summary.energy_residual_ratio, 2)} of the energy that it counts: the error of the integration.`,
     );
     await Promise.all([drawBars(bars, columns, context.signal), drawCurves(curves, columns, context.signal)]);
   }
@@ -67,60 +97,70 @@ export function energy(context) {
   };
 }
 
-/** Draws the change of each account over the run. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
+/** Draws the change of each account over the run as a bar on a logarithmic scale. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
 function drawBars(place, columns, signal) {
-  const { accounts, change } = ledger(columns);
-  const backwards = accounts.toReversed();
-  const { symbol, size } = suitedUnit("kinetic", accounts.map(change));
-  const traces = ["supplied", "dissipated", "gained"].map((name, group) => {
-    const names = backwards.filter((account) => groupOf(account) === group);
-    return {
-      type: "bar",
-      orientation: "h",
-      name,
-      y: names.map(label),
-      x: names.map((account) => change(account) / size),
-      marker: { color: LINES[group] },
-      showlegend: true,
-      text: names.map((account) => say(account, change(account), 3)),
-      textposition: "outside",
-      cliponaxis: false,
-      hovertemplate: `%{y}: %{x:.4~g} ${symbol}<extra></extra>`,
-    };
-  });
-  const values = accounts.map((account) => change(account) / size);
-  const [least, largest] = [Math.min(0, ...values), Math.max(0, ...values)];
-  // Numbers stand beyond the ends of bars.
-  const part = Math.min(MOST_BESIDE, BESIDE / Math.max(1, (place.clientWidth || USUAL) - NAMES));
-  const room = (part / (1 - 2 * part)) * (largest - least || 1);
-  const xaxis = {
-    title: `energy [${symbol}]`,
-    quantity: backwards[0],
-    size,
-    range: [least < 0 ? least - room : 0, largest + room],
-  };
-  const yaxis = { title: "", automargin: true, categoryorder: "array", categoryarray: backwards.map(label) };
-  return draw(place, traces, { xaxis, yaxis, margin: { l: 20, r: 80, t: 30, b: 50 } }, signal);
-}
-
-/** Draws the accounts over time. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
-function drawCurves(place, columns, signal) {
-  const { accounts } = ledger(columns);
-  const { symbol, size } = suitedUnit(
-    "kinetic",
-    accounts.flatMap((name) => columns[name]),
-  );
-  const traces = accounts.map((name, order) => {
-    const dash = DASHES[Math.floor(order / LINES.length) + (groupOf(name) === 2 ? 1 : 0)];
+  const accounts = sortedAccounts(columns);
+  const { symbol, size } = unit("kinetic");
+  const floor = 10 ** floorOf(accounts.map(({ change }) => change / size));
+  const named = accounts.map((account) => ({
+    ...account,
+    category: `${account.words}, ${say(account.name, Math.abs(account.change), 3)}`,
+    end: Math.max(floor, Math.abs(account.change) / size),
+  }));
+  const traces = ["supplied", "dissipated", "gained or lost"].map((name, group) => {
+    const bars = named.filter((account) => account.group === group);
     return {
       type: "scatter",
       mode: "lines",
-      name: label(name),
+      name,
+      // A gap ends each bar.
+      x: bars.flatMap(({ end }) => [floor, end, null]),
+      y: bars.flatMap(({ category }) => [category, category, category]),
+      line: { color: LINES[group], width: BAR },
+      showlegend: bars.length > 0,
+      hovertemplate: `%{y}<extra></extra>`,
+    };
+  });
+  const largest = Math.max(...named.map(({ end }) => end));
+  const xaxis = {
+    title: `energy [${symbol}], logarithmic`,
+    type: "log",
+    range: [Math.log10(floor), Math.log10(largest) + 0.1],
+  };
+  const yaxis = {
+    title: "",
+    automargin: true,
+    categoryorder: "array",
+    categoryarray: named.map(({ category }) => category).toReversed(),
+  };
+  return draw(
+    place,
+    traces,
+    { showlegend: true, xaxis, yaxis, margin: { l: 20, r: 30, t: 30, b: 50 } },
+    signal,
+  );
+}
+
+/** Draws the sizes of the accounts over time. @param {HTMLElement} place @param {any} columns @param {AbortSignal} signal */
+function drawCurves(place, columns, signal) {
+  const accounts = sortedAccounts(columns);
+  const { symbol, size } = unit("kinetic");
+  const floor = size * 10 ** floorOf(accounts.map(({ change }) => change / size));
+  const traces = accounts.map(({ name, group }, order) => {
+    const dash = group === 2 ? "dot" : DASHES[Math.floor(order / LINES.length)];
+    const words = group === 2 ? `${name} energy` : label(name);
+    const sizes = columns[name].map((/** @type {number | null} */ value) =>
+      value !== null && Math.abs(value) >= floor ? Math.abs(value) : null,
+    );
+    return {
+      type: "scatter",
+      mode: "lines",
+      name: words,
       x: columns.time,
-      y: scaled(columns[name], size),
+      y: scaled(sizes, size),
       line: { color: LINES[order % LINES.length], dash, width: 1.4 },
       showlegend: true,
-      hovertemplate: `${label(name)}: %{y:.4~g} ${symbol}<extra></extra>`,
+      hovertemplate: `${words}: %{y:.4~g} ${symbol}<extra></extra>`,
     };
   });
   return draw(
@@ -128,7 +168,7 @@ function drawCurves(place, columns, signal) {
     traces,
     {
       xaxis: { title: "time [s]" },
-      yaxis: { title: `energy since the start [${symbol}]`, quantity: accounts.at(-1), size },
+      yaxis: { title: `size of the energy since the start [${symbol}]`, type: "log" },
       hovermode: "x",
     },
     signal,

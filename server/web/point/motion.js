@@ -3,12 +3,14 @@
 import { Problem } from "../data/api.js";
 import { nodeTables, rotationTable, windowTables } from "../data/motion-requests.js";
 import { biasOver, FEWEST, orbitStatistics, recordedAs, STATISTICS } from "../data/statistics.js";
-import { say, shown, unit } from "../data/units.js";
+import { number, say, shown, unit } from "../data/units.js";
 import { Brush, dragWindow } from "../draw/brush.js";
 import {
   holeTrace,
+  isWallSeen,
   orbitLayout,
   orbitTrace,
+  peaksTrace,
   seenDownhole,
   spectrumLayout,
   spectrumTrace,
@@ -55,6 +57,8 @@ class NodeMotion {
   #orbit = canvas("Orbit of the node", "orbit");
   #spectrum = canvas("Full spectrum of the node", "spectrum");
   #rotationName = h("h2", {}, "Rotation speed and torque");
+  #wall = h("span", {});
+  #shaded = h("span", { hidden: true }, " Shaded: frequencies that the time steps do not resolve.");
   #statistics = h("div", {});
   #wrong = h("p", { class: "wrong", role: "alert" });
   #refused = h("p", { class: "panel empty", role: "alert", hidden: true });
@@ -93,7 +97,7 @@ class NodeMotion {
     const panel = (
       /** @type {string} */ name,
       /** @type {HTMLElement} */ picture,
-      /** @type {string} */ caption,
+      /** @type {(string | HTMLElement)[]} */ ...caption
     ) =>
       h("div", { class: "panel" }, h("h2", {}, name), h("figure", {}, picture, h("figcaption", {}, caption)));
     return h(
@@ -111,9 +115,15 @@ class NodeMotion {
         panel(
           "Orbit, looking downhole",
           this.#orbit,
-          "The low side is down; forward whirl goes clockwise. On the grey circle the node touches the wall.",
+          "The low side is down, the axis of the hole at zero; forward whirl goes clockwise. ",
+          this.#wall,
         ),
-        panel("Full spectrum", this.#spectrum, "Shaded: frequencies that the time steps do not resolve."),
+        panel(
+          "Full spectrum",
+          this.#spectrum,
+          "Dots: the highest lines, interpolated between the frequencies of the spectrum.",
+          this.#shaded,
+        ),
         h("div", { class: "panel" }, this.#statistics),
         h("div", { class: "panel" }, this.#lines.element),
       ),
@@ -405,10 +415,17 @@ class NodeMotion {
     if (!table?.columns.u.length) return;
     this.#orbit.setAttribute("aria-label", `Orbit of ${words}`);
     const trace = orbitTrace(table, lowSide, { color: LINES[0] });
+    const layout = orbitLayout(isZoomed, [trace], clearance);
+    const largest = this.#windowed?.statistics.columns.orbit_largest_radius[0];
+    this.#wall.textContent = isWallSeen(layout, clearance)
+      ? "On the grey circle the node touches the wall."
+      : largest < clearance
+        ? `The wall is outside the picture, at least ${say("clearance", clearance - largest, 3)} from the orbit.`
+        : "The node lies against the wall, which is outside the picture.";
     await draw(
       this.#orbit,
       [holeTrace(clearance), trace],
-      { ...orbitLayout(isZoomed, [trace], clearance), shows: [node, isZoomed] },
+      { ...layout, shows: [node, isZoomed] },
       this.#context.signal,
     );
   }
@@ -423,7 +440,9 @@ class NodeMotion {
   #plotSpectrum(table) {
     // With another range the picture is shown as a whole.
     const layout = { ...spectrumLayout([{ table }], this.choices.isLog), shows: this.choices.range };
-    return draw(this.#spectrum, [spectrumTrace(table, { color: LINES[0] })], layout, this.#context.signal);
+    this.#shaded.hidden = layout.shapes.length === 0;
+    const traces = [spectrumTrace(table, { color: LINES[0] }), peaksTrace(table, { color: LINES[1] })];
+    return draw(this.#spectrum, traces, layout, this.#context.signal);
   }
 
   #drawStatistics() {
@@ -460,6 +479,18 @@ class NodeMotion {
         { class: "facts" },
         facts.flatMap(([name, text]) => [h("dt", {}, name), h("dd", { class: "number" }, text)]),
       ),
+      h("p", { class: "small soft" }, sayAxes(this.#place().lowSide)),
     );
   }
+}
+
+/** Angle below which an axis points to the low side [degrees]. */
+const ALONG_DEG = 0.5;
+
+/** Directions of u and v in words. @param {number} lowSide angle of the low side, from u towards v [rad] */
+function sayAxes(lowSide) {
+  const angle = (lowSide * 180) / Math.PI;
+  const v = "v is a right angle clockwise of it";
+  if (Math.abs(angle) < ALONG_DEG) return `u points to the low side; looking downhole, ${v}.`;
+  return `Looking downhole, u points ${number(Math.abs(angle), 3)}° ${angle > 0 ? "counterclockwise" : "clockwise"} of the low side; ${v}.`;
 }

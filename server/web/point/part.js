@@ -10,6 +10,8 @@ import { nodeInLink, unrecordedNode } from "../data/motion-requests.js";
  * @property {URLSearchParams} query
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(name: string) => string} bias text to show next to a number of the summary, if verifying the sweep found its bias
+ * @property {(ordinal: number) => import("../data/accuracy.js").Measured | null} [measured] error of a point's orbit sizes, found by verifying the sweep; absent in comparisons
+ * @property {number[]} [verified] ordinals of the sweep's verified points; absent in comparisons
  * @property {() => Promise<any>} diagnosis class, findings, and causes of spectral lines
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
  * @property {() => void} drawn says that what is shown is of other requests than before

@@ -1,5 +1,6 @@
 // Choices of strings in motion, as the link holds them.
 
+import { MAGNIFICATIONS } from "../data/mean-motion.js";
 import { label } from "../data/units.js";
 
 /** Factors by which the string's distance from the axis of the hole is multiplied. */
@@ -62,6 +63,17 @@ export class PlayerChoices {
   get factor() {
     const asked = this.query.get("exaggerate") ?? "";
     return EXAGGERATIONS.includes(asked) ? Number(asked) : 100;
+  }
+
+  /** Factor by which the motion about the mean is multiplied on top of it; null for the one that suits the motion. */
+  get magnification() {
+    const asked = Number(this.query.get("motion"));
+    return MAGNIFICATIONS.includes(asked) ? asked : null;
+  }
+
+  /** Whether a stripe shows the rotation. */
+  get isStriped() {
+    return this.has("theta_z") && this.query.get("stripe") !== "no";
   }
 
   get speed() {

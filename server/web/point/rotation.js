@@ -1,6 +1,7 @@
 // Rotation speed and torque over time at both ends of the string: from the history, or else from the snapshots.
 
 import { Problem } from "../data/api.js";
+import { keptWindow } from "../data/motion-requests.js";
 import { frames, snapshotsOf } from "../data/snapshots.js";
 import { say, shown, title } from "../data/units.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
@@ -72,6 +73,9 @@ export async function endsOfSnapshots(context, window) {
 export async function endsOfHistory(context, window) {
   // The service would refuse, which the browser writes of.
   if (!context.point.tables.includes("history")) return [];
+  const kept = keptWindow(context.point);
+  const part = { from: Math.max(kept.from, window.from), to: Math.min(kept.to, window.to) };
+  if (part.from >= part.to) return [];
   try {
     // One sample tells the columns.
     const [statics, sample] = await Promise.all([
@@ -91,7 +95,7 @@ export async function endsOfHistory(context, window) {
         const names = QUANTITIES.map((quantity) => `${quantity}_${node}`);
         const { columns } = await context.table("history", {
           node,
-          ...window,
+          ...part,
           fields: ["time", ...names].join(","),
           max_points: SHOWN,
           decimation: "minmax",
@@ -167,7 +171,7 @@ function sayTorqueOnBit({ scenario }) {
 
 /** @param {import("./part.js").PointContext} context */
 export function rotation(context) {
-  const place = canvas("Rotation speed and torque at bit and top", "rotation", "", "whole");
+  const place = canvas("Rotation speed and torque at bit and top", "rotation");
   const caption = h("figcaption", {});
   const begin = generations();
   const element = h(
@@ -198,7 +202,7 @@ export function rotation(context) {
       await draw(
         place,
         lines.map(({ end, quantity, time, values }) => ({
-          type: "scattergl",
+          type: "scatter",
           mode: "lines",
           x: time,
           y: shown(quantity, values),

@@ -1,4 +1,4 @@
-// Strings in motion as a file: all that is shown, one string below the other, with the scale and the time.
+// Strings in their holes as a file: all that is shown, one string below the other, with the scale, and the time of strings in motion.
 
 import { colourOf } from "../draw/colours.js";
 import { inks } from "../draw/plots.js";
@@ -9,18 +9,21 @@ import { download, h } from "../ui/dom.js";
 const [SCALE_HEIGHT, CELLS] = [44, 120];
 
 /** @typedef {{scene: import("../draw/string-scene.js").StringScene, heading: string}} Actor */
-/** Time and name of the scale, and the values at its ends. @typedef {{time: string, text: string, least: string, largest: string}} Words */
+/** Time, empty at rest, name of the scale, and the values at its ends. @typedef {{time: string, text: string, least: string, largest: string}} Words */
 
 /**
  * Saves strings as a file.
+ * @param {string} name of the file, without its ending
  * @param {"png" | "svg"} format
  * @param {Actor[]} actors
- * @param {Words} words
+ * @param {Words | null} words none of strings whose colours stand for no values
  */
-export function saveStrings(format, actors, words) {
+export function saveStrings(name, format, actors, words) {
   const width = Math.max(...actors.map(({ scene }) => scene.element.clientWidth));
-  const height = actors.reduce((sum, { scene }) => sum + scene.element.clientHeight, SCALE_HEIGHT);
-  const name = `string-in-motion-${words.time.replace(/[^\d.]+/g, "")}-s`;
+  const height = actors.reduce(
+    (sum, { scene }) => sum + scene.element.clientHeight,
+    words ? SCALE_HEIGHT : 0,
+  );
   if (format === "svg") {
     const pen = new SvgPen(width, height);
     drawFile(pen, actors, words, width, height);
@@ -34,7 +37,7 @@ export function saveStrings(format, actors, words) {
   canvas.toBlob((blob) => blob && download(blob, `${name}.png`), "image/png");
 }
 
-/** @param {import("../draw/svg-pen.js").Pen} pen @param {Actor[]} actors @param {Words} words @param {number} width @param {number} height */
+/** @param {import("../draw/svg-pen.js").Pen} pen @param {Actor[]} actors @param {Words | null} words @param {number} width @param {number} height */
 function drawFile(pen, actors, words, width, height) {
   const { panel, text } = inks();
   pen.fillStyle = panel;
@@ -47,12 +50,17 @@ function drawFile(pen, actors, words, width, height) {
     pen.fillText(heading, 12, 20);
     pen.translate(0, scene.element.clientHeight);
   }
+  if (words) drawScale(pen, words, width);
+}
+
+/** @param {import("../draw/svg-pen.js").Pen} pen @param {Words} words @param {number} width */
+function drawScale(pen, words, width) {
   pen.font = "13px system-ui, sans-serif";
   pen.textBaseline = "middle";
-  pen.fillStyle = text;
+  pen.fillStyle = inks().text;
   pen.textAlign = "left";
   const middle = SCALE_HEIGHT / 2;
-  pen.fillText(`${words.time}   ${words.text}`, 12, middle);
+  pen.fillText(words.time ? `${words.time}   ${words.text}` : words.text, 12, middle);
   const [left, right] = [width * 0.45, width * 0.85];
   pen.textAlign = "right";
   pen.fillText(words.least, left - 8, middle);

@@ -1,12 +1,13 @@
 // Strings moving in their holes, played from snapshots on one clock: the string of a point, or several side by side.
 
 import { frames, valueAt } from "../data/snapshots.js";
+import { magnified, MAGNIFICATIONS, meansOf, suitedMagnification } from "../data/mean-motion.js";
 import { kindsOf, partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { nodeFrames } from "../data/well-frames.js";
-import { GRADIENT } from "../draw/colours.js";
-import { StringScene } from "../draw/string-scene.js";
-import { freeView, planView, readView, roundedView, sayView, sectionView } from "../draw/viewpoint.js";
+import { scaleParts, scaleWords } from "../draw/colour-scale.js";
+import { SharedView } from "../draw/shared-view.js";
+import { KEYS } from "../draw/string-scene.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { BEYOND } from "./contacts.js";
@@ -14,7 +15,7 @@ import { colourName, EXAGGERATIONS, PlayerChoices, SPEEDS } from "./player-choic
 import { coloursOf } from "./string-colours.js";
 import { saveStrings } from "./string-file.js";
 
-/** Rest of the view and the time before the link holds them. */
+/** Rest of the time before the link holds it. */
 const REST_MS = 200;
 
 /** @typedef {import("../data/snapshots.js").Frames} Frames */
@@ -22,7 +23,7 @@ const REST_MS = 200;
 
 /**
  * One string with its picture.
- * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, colours: import("./string-colours.js").Colours, scene: StringScene}} Actor
+ * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, means: import("../data/mean-motion.js").Means | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
  */
 
 export class StringPlayer {
@@ -33,9 +34,7 @@ export class StringPlayer {
   #keep;
   #signal;
   #keepTime;
-  /** Shows the strings from a viewpoint. @type {(view: import("../draw/viewpoint.js").View) => void} */
-  #turnTo;
-  #section;
+  #view;
   #controls = h("div", { class: "controls" });
   #wrong = h("p", { class: "wrong", role: "alert" });
   #legend = h("div", { class: "scale" });
@@ -70,9 +69,7 @@ export class StringPlayer {
     this.#signal = signal;
     const geometries = strings.map(({ statics }) => nodeFrames(statics));
     // Several strings are seen from one place: that of the first one's section.
-    const usual = roundedView(sectionView(geometries[0].axis));
-    const view = readView(query.get("turn") ?? "", usual);
-    const keepView = debounced(() => keep({ turn: sayView(view, usual) || null }), REST_MS, signal);
+    this.#view = new SharedView(geometries[0].axis, { query, keep, signal });
     this.#keepTime = debounced(
       () =>
         this.#isPlaying ||
@@ -80,27 +77,15 @@ export class StringPlayer {
       REST_MS,
       signal,
     );
-    const turned = () => {
-      for (const { scene } of this.#actors) scene.turned();
-      keepView();
-    };
-    this.#turnTo = (to) => {
-      Object.assign(view, to);
-      turned();
-    };
-    this.#section = usual;
     this.#actors = strings.map((one, order) => ({
       ...one,
       geometry: geometries[order],
       kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
       motion: null,
+      means: null,
       colours: { value: () => 0, range: [0, 1] },
-      scene: new StringScene(
+      scene: this.#view.scene(
         `The string moving in its hole${one.heading && `, ${one.heading}`}; arrow keys turn it, + and - change its size, space plays`,
-        view,
-        usual,
-        turned,
-        signal,
       ),
     }));
     signal.addEventListener("abort", () => this.#setPlaying(false), { once: true });
@@ -122,6 +107,7 @@ export class StringPlayer {
 
   #panels() {
     return this.#actors.map(({ scene, heading }) => {
+      scene.element.setAttribute("aria-keyshortcuts", `Space ${KEYS}`);
       scene.element.addEventListener("keydown", (event) => {
         if (event.key !== " ") return;
         event.preventDefault();
@@ -149,7 +135,7 @@ export class StringPlayer {
   }
 
   #drawControls() {
-    const { offered, colour, factor, speed, depths, span } = this.#choices;
+    const { offered, colour, factor, magnification, isStriped, speed, depths, span } = this.#choices;
     const set =
       (/** @type {string} */ name, /** @type {() => void} */ then) => (/** @type {string} */ value) => {
         this.#keep({ [name]: value });
@@ -178,6 +164,19 @@ export class StringPlayer {
         set("exaggerate", show),
       ),
       choice(
+        "Motion about the mean",
+        [
+          ["", `as it suits${this.#moving.length ? `, ${this.#magnification} times more` : ""}`],
+          ...MAGNIFICATIONS.map(
+            (step) =>
+              /** @type {[string, string]} */ ([String(step), step === 1 ? "no more" : `${step} times more`]),
+          ),
+        ],
+        String(magnification ?? ""),
+        set("motion", show),
+      ),
+      this.#choices.has("theta_z") && this.#stripeTick(isStriped),
+      choice(
         "Speed",
         SPEEDS.map((text) => [text, speedName(text)]),
         String(speed),
@@ -187,7 +186,7 @@ export class StringPlayer {
       this.#entry("to depth", "bottom", depths.to, "measured_depth", show),
       this.#entry("From", "from", span.from, "time", load),
       this.#entry("to", "to", span.to, "time", load),
-      this.#viewpoints(),
+      this.#view.buttons(),
       h(
         "button",
         { onclick: () => this.#save("png"), "aria-label": "Save the string as PNG" },
@@ -201,19 +200,25 @@ export class StringPlayer {
     );
   }
 
-  /** Buttons for viewpoints. */
-  #viewpoints() {
-    /** @type {[string, import("../draw/viewpoint.js").View][]} */
-    const views = [
-      ["Section", this.#section],
-      ["Plan", roundedView(planView())],
-      ["Free view", freeView()],
-    ];
-    return h(
-      "span",
-      { role: "group", "aria-label": "Viewpoint", style: "display:flex;gap:.3rem" },
-      views.map(([text, view]) => h("button", { onclick: () => this.#turnTo(view) }, text)),
+  /** @param {boolean} isStriped */
+  #stripeTick(isStriped) {
+    const box = h("input", {
+      type: "checkbox",
+      checked: isStriped,
+      onchange: () => {
+        this.#keep({ stripe: box.checked ? null : "no" });
+        attend(this.load(), this.#signal);
+      },
+    });
+    return h("label", { class: "tick" }, box, "Stripe");
+  }
+
+  /** Factor by which the motion about the mean is multiplied, one for all strings. */
+  get #magnification() {
+    const suited = this.#actors.flatMap(({ means, statics }) =>
+      means ? [suitedMagnification(means.reach, statics.clearance)] : [],
     );
+    return this.#choices.magnification ?? Math.min(...suited);
   }
 
   /** A field for a number of the link. @param {string} text @param {string} name @param {number} value @param {string} quantity @param {() => void} then */
@@ -240,7 +245,13 @@ export class StringPlayer {
     this.#wrong.textContent = "";
     this.#drawControls();
     this.#setPlaying(false);
-    const names = ["u", "v", ...(this.#choices.has("normal_force") ? ["normal_force"] : [])];
+    const { isStriped } = this.#choices;
+    const names = [
+      "u",
+      "v",
+      ...(this.#choices.has("normal_force") ? ["normal_force"] : []),
+      ...(isStriped ? ["theta_z"] : []),
+    ];
     const taken = await Promise.all(
       this.#actors.map(({ context, there }) => frames(context, names, span, there.nodes)),
     );
@@ -250,7 +261,11 @@ export class StringPlayer {
       this.#wrong.textContent = `There are no two snapshots${still.heading && ` of ${still.heading}`} in this window; the next are ${say("time", still.there.interval)} apart.`;
       return;
     }
-    this.#actors.forEach((actor, order) => (actor.motion = taken[order]));
+    this.#actors.forEach((actor, order) => {
+      actor.motion = taken[order];
+      actor.means = meansOf(taken[order]);
+    });
+    this.#drawControls();
     this.#slider.min = String(this.#first);
     this.#slider.max = String(this.#end);
     await this.#recolour();
@@ -279,28 +294,14 @@ export class StringPlayer {
   /** Name of the colours with the ends of their scale, and the time, in words. */
   #words() {
     const [name] = this.#choices.colour;
-    const { symbol } = unit(name);
-    const [least, largest] = shown(name, this.#actors[0].colours.range).map((value) =>
-      String(Number(Number(value).toPrecision(3))),
-    );
-    return {
-      text: `${colourName(name)}${symbol ? ` [${symbol}]` : ""}`,
-      least,
-      largest,
-      time: this.#clock.textContent ?? "",
-    };
+    const scale = scaleWords(name, colourName(name), this.#actors[0].colours.range);
+    return { ...scale, time: this.#clock.textContent ?? "" };
   }
 
   #drawLegend() {
-    const { text, least, largest } = this.#words();
-    const { factor, colour } = this.#choices;
-    fill(
-      this.#legend,
-      h("span", { class: "small" }, text),
-      h("span", { class: "small number" }, least),
-      h("span", { class: "gradient", style: `background:${GRADIENT}`, "aria-hidden": "true" }),
-      h("span", { class: "small number" }, largest),
-    );
+    const { factor, colour, isStriped } = this.#choices;
+    const magnification = this.#magnification;
+    fill(this.#legend, scaleParts(this.#words()));
     const counts = this.#actors.map(({ motion, there, heading }) => {
       if (!motion) return "";
       const all =
@@ -311,7 +312,7 @@ export class StringPlayer {
     });
     fill(
       this.#caption,
-      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Tool joints, collars and stabilizers are wider than pipe; the cone is the bit. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
+      `${counts.join("; ")}; between them the motion is drawn straight. The grey line is the string at rest, the dashed one the axis of the hole, with marks of measured depth next to it. Tool joints, collars and stabilizers are wider than pipe; the cone is the bit. Rings show the positions at which the string touches the wall. Distances from the axis are drawn ${factor === 1 ? "to scale" : `${factor} times as large`}${magnification === 1 ? "" : `, and the motion about the mean position ${magnification} times more, so that it can pass the rings`}.${isStriped ? " The stripe is painted along the string; the dial shows the turn of its deep end (thick) and of its top (thin)." : ""}${colour[0] === "normal_force" ? ` Dots touch the wall. ${BEYOND}` : ""} Drag to turn, with Shift to shift, scroll to zoom.`,
     );
   }
 
@@ -321,8 +322,9 @@ export class StringPlayer {
       depths: { from, to },
       factor,
     } = this.#choices;
-    for (const { motion, statics, scene, geometry, colours, kinds } of this.#actors) {
-      if (!motion) continue;
+    const magnification = this.#magnification;
+    for (const { motion, means, statics, scene, geometry, colours, kinds, context } of this.#actors) {
+      if (!motion || !means) continue;
       const depth = statics.measured_depth;
       const upper = Math.max(
         0,
@@ -339,12 +341,29 @@ export class StringPlayer {
           lower < 0 ? depth.length - 1 : Math.max(lower, upper + 1),
         ],
         factor,
-        place: (node) => [valueAt(motion, "u", node, this.#time), valueAt(motion, "v", node, this.#time)],
+        place: (node) => {
+          const now = /** @type {[number, number]} */ (
+            ["u", "v"].map((name) => valueAt(motion, name, node, this.#time))
+          );
+          return magnified(means, node, now, magnification);
+        },
+        turn:
+          motion.columns.theta_z && this.#turn(motion, context.point.scenario.operation.rotation_speed_rpm),
         rest: (node) => [statics.u[node], statics.v[node]],
         ...colours,
       });
     }
     this.#drawLegend();
+  }
+
+  /**
+   * Turn of the string at a node: that of the drive, and the twist.
+   * @param {Frames} motion with theta_z
+   * @param {number} speed of the drive [rpm]
+   * @returns {(node: number) => number} [rad]
+   */
+  #turn(motion, speed) {
+    return (node) => (speed * Math.PI * this.#time) / 30 + valueAt(motion, "theta_z", node, this.#time);
   }
 
   /** Stops at a time. @param {number} time [s] */
@@ -390,6 +409,7 @@ export class StringPlayer {
 
   /** @param {"png" | "svg"} format */
   #save(format) {
-    saveStrings(format, this.#actors, this.#words());
+    const words = this.#words();
+    saveStrings(`string-in-motion-${words.time.replace(/[^\d.]+/g, "")}-s`, format, this.#actors, words);
   }
 }

@@ -2,10 +2,14 @@
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
+import { latest } from "../data/latest.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
+import { Overview } from "../draw/overview.js";
 import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
+import { attend } from "../ui/notices.js";
+import { reportLink } from "../ui/report-link.js";
 import { keep, link } from "../ui/router.js";
 import { requestLines, snippets } from "../ui/snippets.js";
 import { headline } from "./headline.js";
@@ -77,16 +81,19 @@ export async function show(main, route, signal) {
   };
   follow(route.query);
   const context = contextOf(place, point, biases, { drawn, follow }, signal);
-  const judgement = headline(point, context.diagnosis(), signal);
+  const judgement = headline(point, biases.orbitSize(Number(ordinal)), context.diagnosis(), signal);
+  const overview = new Overview(context, ["sweeps", id, "points", ordinal]);
   const part = make(context);
   fill(
     main,
     heading,
     judgement,
+    overview.element,
     h("nav", { class: "tabs", "aria-label": "Views of the point" }, tabs),
     h("section", { class: IN_PANEL.includes(view) ? "panel" : "", "aria-label": name }, part.element),
     taken,
   );
+  attend(overview.draw(), signal);
   // Pictures wait for their place in the page, which the view takes when it is complete.
   part.draw().catch((error) => {
     if (signal.aborted) return;
@@ -125,8 +132,11 @@ function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, foll
       drawn();
     },
     bias: (name) => biases.beside(name, Number(ordinal)),
+    measured: (number) => biases.orbitSize(number),
+    verified: biases.verified,
     diagnosis: () => (diagnosis ??= get(`${path}/diagnosis`, {}, signal)),
-    table: (table, asks = {}) => get(`${path}/${table}`, { format: "json", ...asks }, signal),
+    // The overview shows tables of the views.
+    table: latest((table, asks) => get(`${path}/${table}`, { format: "json", ...asks }, signal)),
     drawn,
     signal,
   };
@@ -196,7 +206,14 @@ function headingPart({ sweep, ordinal, query }, point) {
         h("p", {}, sayParameters(point.parameters)),
         statePart(point),
       ),
-      h("div", { class: "controls" }, neighbour(-1, "← Previous"), neighbour(1, "Next →"), compare),
+      h(
+        "div",
+        { class: "controls" },
+        neighbour(-1, "← Previous"),
+        neighbour(1, "Next →"),
+        compare,
+        reportLink(point.links.self),
+      ),
     ),
     point.error && errorPart(point.error),
   ];

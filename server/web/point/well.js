@@ -1,16 +1,18 @@
-// The well in space with the string in it at rest, coloured by a quantity.
+// The view of a well in space with the string in it at rest, coloured by a quantity.
 
-import { label, say, shown, title, unit } from "../data/units.js";
-import { nodeFrames } from "../data/well-frames.js";
-import { canvas, colourBar, draw, inks, lineScale } from "../draw/plots.js";
+import { label } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { pythonColumns, QUANTITIES, tableOf } from "./profiles.js";
+import { WellPictures } from "./well-pictures.js";
 
 /** Factors by which the string's distance from the axis of the hole is multiplied. */
 const EXAGGERATIONS = ["1", "20", "100", "300"];
 const USUAL = 20;
+/** Sentences about pictures of wells. */
+export const LEGEND =
+  "The dashed line is the axis of the hole, the rings its wall, with marks of measured depth next to it; tool joints, collars and stabilizers are wider than pipe, and the cone is the bit. Drag to turn, with Shift to shift, scroll to zoom.";
 
 /**
  * @param {import("./part.js").PointContext} context
@@ -18,13 +20,15 @@ const USUAL = 20;
  */
 export function well(context) {
   const { query } = context;
-  const place = canvas("The well and the string in it", "well", "tall", "whole");
   const controls = h("div", { class: "controls" });
+  const place = h("div", {});
   const caption = h("figcaption", {});
   const colour = () =>
     QUANTITIES.some(([name]) => name === query.get("colour")) ? (query.get("colour") ?? "") : "normal_force";
   const factor = () => exaggeration(query, USUAL);
   const begin = generations();
+  /** @type {WellPictures | undefined} */
+  let pictures;
   const set = (/** @type {string} */ key) => (/** @type {string} */ value) => {
     context.keep({ [key]: value });
     attend(redraw(), context.signal);
@@ -33,6 +37,14 @@ export function well(context) {
   async function redraw() {
     const isNewest = begin();
     const name = colour();
+    const statics = (await context.table("statics")).columns;
+    const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
+    if (!isNewest()) return;
+    if (!pictures) {
+      const { sections } = context.point.scenario.string;
+      pictures = new WellPictures([{ statics, sections, heading: "" }], context);
+      fill(place, pictures.element);
+    }
     fill(
       controls,
       choice(
@@ -42,25 +54,14 @@ export function well(context) {
         set("colour"),
       ),
       exaggerationChoice(factor(), set("exaggerate")),
+      pictures.buttons(),
     );
-    const statics = (await context.table("statics")).columns;
-    const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
-    if (!isNewest()) return;
-    const values = onNodes(table, name, statics.measured_depth.length);
-    fill(
-      caption,
-      `${saysExaggeration("The string at rest; its", factor())} The thin grey line is the axis of the hole. Drag to turn, scroll to zoom.`,
-    );
-    await draw(
-      place,
-      wellTraces(statics, name, values, factor()),
-      { showlegend: false, ...spaceLayout(statics) },
-      context.signal,
-    );
+    pictures.show(factor(), { name, values: [onNodes(table, name, statics.measured_depth.length)] });
+    fill(caption, `${saysExaggeration("The string at rest; its", factor())} ${LEGEND}`);
   }
 
   return {
-    element: h("div", {}, controls, h("figure", {}, place, caption)),
+    element: h("div", {}, controls, place, caption),
     draw: redraw,
     request: () => requestOf(colour()),
   };
@@ -69,7 +70,16 @@ export function well(context) {
 /** Requests behind the well. @param {string} name of the quantity that colours the string @returns {import("./part.js").PartRequest} */
 function requestOf(name) {
   const table = tableOf(name);
-  const space = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"];
+  const space = [
+    "measured_depth",
+    "north",
+    "east",
+    "true_vertical_depth",
+    "u",
+    "v",
+    "low_side_angle",
+    "clearance",
+  ];
   const statics = [...space, ...(table === "statics" ? [name] : [])];
   const depth = table === "profile" ? ["measured_depth_top", "measured_depth_bottom"] : ["measured_depth"];
   const asked = [
@@ -79,84 +89,6 @@ function requestOf(name) {
   return {
     asked,
     python: asked.map((one) => pythonColumns(one.table, one.query.fields.split(","))).join("\n"),
-  };
-}
-
-/**
- * Axis of the hole and the string, coloured by values at its nodes.
- * @param {any} statics columns of the table
- * @param {string} name of the values
- * @param {(number | null)[]} values
- * @param {number} factor by which the distance from the axis is multiplied
- */
-function wellTraces(statics, name, values, factor) {
-  const axis = { north: statics.north, east: statics.east, down: statics.true_vertical_depth };
-  const line = (/** @type {typeof axis} */ path) => ({
-    x: shown("east", path.east),
-    y: shown("north", path.north),
-    z: shown("true_vertical_depth", path.down),
-  });
-  const text = values.map(
-    (value, index) =>
-      `${say("measured_depth", statics.measured_depth[index])} measured depth<br>${label(name)} ${say(name, value)}`,
-  );
-  return [
-    {
-      type: "scatter3d",
-      mode: "lines",
-      ...line(axis),
-      line: { color: inks().soft, width: 2 },
-      hoverinfo: "skip",
-      name: "axis of the hole",
-    },
-    {
-      type: "scatter3d",
-      mode: "lines",
-      ...line(displaced(statics, axis, factor)),
-      line: {
-        color: shown(name, values),
-        colorscale: lineScale(),
-        width: 9,
-        colorbar: colourBar(title(name)),
-        showscale: true,
-      },
-      text,
-      hoverinfo: "text",
-      name: "string",
-    },
-  ];
-}
-
-/** Distance of the camera, in sizes of the picture. */
-const [CAMERA, ABOVE] = [2.2, 0.15];
-
-/**
- * Layout of a picture of wells in space, seen as a vertical section: from the side of the plane through both ends of a well.
- * @param {{north: number[], east: number[]}} statics
- * @param {number} [above] height of the camera over the middle, in the same unit
- */
-export function spaceLayout({ north, east }, above = ABOVE) {
-  const { soft, line } = inks();
-  const reach = (/** @type {number[]} */ values) => values[values.length - 1] - values[0];
-  const along = { north: reach(north), east: reach(east) };
-  const length = Math.hypot(along.north, along.east) || 1;
-  if (!along.north && !along.east) along.east = 1;
-  const axis = (/** @type {string} */ text) => ({
-    title: { text: `${text} [${unit("north").symbol}]` },
-    gridcolor: line,
-    zeroline: false,
-    color: soft,
-    backgroundcolor: "rgba(0,0,0,0)",
-  });
-  return {
-    margin: { l: 0, r: 0, t: 0, b: 0 },
-    scene: {
-      xaxis: axis("east"),
-      yaxis: axis("north"),
-      zaxis: { ...axis("true vertical depth"), autorange: "reversed" },
-      aspectmode: "data",
-      camera: { eye: { x: (CAMERA * along.north) / length, y: (-CAMERA * along.east) / length, z: above } },
-    },
   };
 }
 
@@ -201,22 +133,4 @@ export function onNodes(columns, name, nodes) {
     ];
     return above === null || below === null ? (above ?? below) : (above + below) / 2;
   });
-}
-
-/**
- * Path of the string, its distance from the axis multiplied.
- * @param {any} statics
- * @param {{north: number[], east: number[], down: number[]}} axis
- * @param {number} factor
- */
-export function displaced(statics, axis, factor) {
-  const frames = nodeFrames(statics);
-  const result = { north: [...axis.north], east: [...axis.east], down: [...axis.down] };
-  for (let node = 0; node < axis.north.length; node += 1) {
-    const [u, v] = [factor * statics.u[node], factor * statics.v[node]];
-    result.north[node] += u * frames.u[node][0] + v * frames.v[node][0];
-    result.east[node] += u * frames.u[node][1] + v * frames.v[node][1];
-    result.down[node] += u * frames.u[node][2] + v * frames.v[node][2];
-  }
-  return result;
 }

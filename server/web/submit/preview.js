@@ -1,6 +1,7 @@
 // A picture of the points that a request would become, over two of their parameters.
 
 import { label, shown, title } from "../data/units.js";
+import { MANY } from "../draw/cloud.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
@@ -53,7 +54,7 @@ export class Preview {
         points.map((point) => point.parameters[name]),
       );
     const trace = {
-      type: points.length > 3000 ? "scattergl" : "scatter",
+      type: points.length > MANY ? "dots" : "scatter",
       mode: "markers",
       x: values(x),
       y: y ? values(y) : points.map(() => 0),

@@ -32,6 +32,8 @@ export function mark(form, problems) {
       continue;
     }
     const own = place.dataset.pointer ?? "";
+    const folded = place.closest("details");
+    if (folded) folded.open = true;
     place.querySelector("input, select, textarea")?.setAttribute("aria-invalid", "true");
     place.append(
       h(

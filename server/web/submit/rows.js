@@ -1,22 +1,30 @@
 // Rows of the form: parameters with their values, and changes of the scenario.
 
-import { label, meaning, servedUnit } from "../data/units.js";
+import { inputUnit, label, meaning } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
+import { readersText, servedText } from "./entries.js";
 import { read } from "./values.js";
 
-/** A name with the text of its values. @typedef {{name: string, values: string}} Row */
+/** A name with the text of its values in served units, and the text as it was typed. @typedef {{name: string, values: string, typed?: string}} Row */
 
 export class Rows {
   #kind;
   #rows;
   #changed;
+  #isElsewhere;
   element = h("div", {});
 
-  /** @param {"axes" | "set"} kind member of the request @param {Row[]} rows @param {() => void} changed */
-  constructor(kind, rows, changed) {
+  /**
+   * @param {"axes" | "set"} kind member of the request
+   * @param {Row[]} rows
+   * @param {() => void} changed
+   * @param {(row: Row) => boolean} [isElsewhere] true of rows that another part of the form shows
+   */
+  constructor(kind, rows, changed, isElsewhere = () => false) {
     this.#kind = kind;
     this.#rows = rows;
     this.#changed = changed;
+    this.#isElsewhere = isElsewhere;
     this.#draw();
   }
 
@@ -47,10 +55,16 @@ export class Rows {
     const at = this.#rows.findIndex((entry) => entry.name === name);
     if (value === undefined) {
       if (at >= 0) this.#rows.splice(at, 1);
-    } else if (at >= 0) this.#rows[at].values = JSON.stringify(value);
+    } else if (at >= 0) this.#rows[at] = { name, values: JSON.stringify(value) };
     else this.#rows.push({ name, values: JSON.stringify(value) });
     this.#draw();
     this.#changed();
+  }
+
+  /** Shows the values in the units that now hold. */
+  convert() {
+    for (const row of this.#rows) delete row.typed;
+    this.#draw();
   }
 
   #draw() {
@@ -67,7 +81,7 @@ export class Rows {
     );
     fill(
       this.element,
-      this.#rows.map((row) => this.#line(row)),
+      this.#rows.filter((row) => !this.#isElsewhere(row)).map((row) => this.#line(row)),
       add,
     );
   }
@@ -83,20 +97,26 @@ export class Rows {
       size: 26,
       oninput: () => {
         row.name = path.value.trim();
+        take();
         name();
         this.#changed();
       },
     });
     const values = h("input", {
-      value: row.values,
+      value: row.typed ?? readersText(row.name, row.values),
       "aria-label": isAxis ? "Values" : "Value",
       size: 22,
+      class: "values",
       placeholder: isAxis ? "0.01, 0.02 or 0.01:0.06:6" : "value",
       oninput: () => {
-        row.values = values.value;
+        take();
         this.#changed();
       },
     });
+    const take = () => {
+      row.typed = values.value;
+      row.values = servedText(row.name, values.value);
+    };
     const remove = h(
       "button",
       {
@@ -123,7 +143,7 @@ export class Rows {
 
 /** Label and unit of a name, if the vocabulary has more than the name. @param {string} name */
 function hintOf(name) {
-  const unit = servedUnit(name);
+  const unit = inputUnit(name).symbol;
   return [label(name) !== name.replaceAll("_", " ") && label(name), unit && `in ${unit}`]
     .filter(Boolean)
     .join(", ");

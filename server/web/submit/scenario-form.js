@@ -1,14 +1,25 @@
 // The fields of a scenario as a form, made from its schema: with units, limits and help. What differs from the scenario is a change.
 
 import { get } from "../data/api.js";
-import { unitSystem } from "../data/settings.js";
-import { number, say, servedUnit } from "../data/units.js";
+import { settings } from "../data/settings.js";
+import { inputUnit, number, say, servedUnit } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
+import { readersNumber, servedEntry } from "./entries.js";
 
 /** Fields that the form for new sweeps has elsewhere. */
-const ELSEWHERE = ["name", "accuracy", "well.survey"];
+const ELSEWHERE = [
+  "name",
+  "accuracy",
+  "well.survey",
+  "recording.nodes",
+  "recording.spectrum_windows",
+  "recording.snapshots",
+];
 const REFERENCE = "#/components/schemas/";
+/** Characters of a line of a text, and the most lines that are shown at once. */
+const LINE = 44,
+  MOST_LINES = 5;
 
 /**
  * @typedef {object} Changes
@@ -100,7 +111,7 @@ export class ScenarioForm {
     if (isObject) return folded(path, schema.description, () => this.#section(schema, value, path));
     const item = schema.items && this.#resolved(schema.items);
     if (!item?.properties || !Array.isArray(value) || !value.length)
-      return field(schema, value, path, this.#changes);
+      return field(schema, value, path, this.#changes, this.#signal);
     const entryOf = (/** @type {any} */ entry, /** @type {string} */ at) =>
       folded(
         at,
@@ -126,8 +137,8 @@ function folded(path, help, make) {
   return details;
 }
 
-/** @param {any} schema @param {any} value of the scenario @param {string} path @param {Changes} changes */
-function field(schema, value, path, changes) {
+/** @param {any} schema @param {any} value of the scenario @param {string} path @param {Changes} changes @param {AbortSignal} signal of the view */
+function field(schema, value, path, changes, signal) {
   const now = () => {
     const changed = changes.get(path);
     return changed === undefined ? value : changed;
@@ -152,11 +163,13 @@ function field(schema, value, path, changes) {
     back.hidden = !isChanged;
     fill(
       hint,
-      limits(schema),
-      unitSystem() === "field" && typeof now() === "number" && servedUnit(path)
-        ? ` = ${say(path, now())}`
+      limits(schema, path),
+      inputUnit(path).size !== 1 && typeof now() === "number"
+        ? ` = ${number(Number(now()), 6)} ${servedUnit(path)}`
         : "",
-      isChanged ? ` The scenario has ${written(value)}.` : "",
+      isChanged
+        ? ` The scenario has ${typeof value === "number" ? readersNumber(path, value) : written(value)}.`
+        : "",
     );
   };
   const set = (/** @type {unknown} */ entered) => {
@@ -168,9 +181,9 @@ function field(schema, value, path, changes) {
   };
   const help = `help-${path}`;
   const made = () => {
-    const input = inputOf(schema, now(), { "aria-describedby": help }, set);
+    const input = inputOf(schema, path, now(), { "aria-describedby": help }, set);
     mark();
-    const unit = servedUnit(path);
+    const unit = inputUnit(path).symbol;
     return [
       h("label", { class: "field" }, h("span", {}, `${last(path)}${unit ? ` [${unit}]` : ""}`), input),
       hint,
@@ -179,18 +192,20 @@ function field(schema, value, path, changes) {
     ];
   };
   fill(row, ...made());
+  settings.addEventListener("change", () => fill(row, ...made()), { signal });
   return row;
 }
 
 /**
- * An input for a value: a choice of words, a number, or a text.
+ * An input for a value: a choice of words, a number in the reader's unit, or a text.
  * @param {any} schema
+ * @param {string} path
  * @param {unknown} value
  * @param {Record<string, string>} attributes
  * @param {(entered: unknown) => void} set
  * @returns {HTMLElement}
  */
-function inputOf(schema, value, attributes, set) {
+function inputOf(schema, path, value, attributes, set) {
   const words = wordsOf(schema);
   if (schema.type === "boolean" || words) {
     const options = words ?? ["true", "false"];
@@ -209,16 +224,19 @@ function inputOf(schema, value, attributes, set) {
       ...attributes,
       type: "number",
       step: schema.type === "integer" ? 1 : "any",
-      min: schema.minimum,
-      max: schema.maximum,
-      value: value ?? "",
-      oninput: () => set(box.value === "" ? undefined : Number(box.value)),
+      min: schema.minimum && readersNumber(path, schema.minimum),
+      max: schema.maximum && readersNumber(path, schema.maximum),
+      value: typeof value === "number" ? readersNumber(path, value) : "",
+      oninput: () => set(box.value === "" ? undefined : Number(servedEntry(path, box.value))),
     });
     return box;
   }
-  const box = h("input", {
+  const text = written(value);
+  const box = h("textarea", {
     ...attributes,
-    value: written(value),
+    class: "entry",
+    rows: Math.min(MOST_LINES, Math.ceil(text.length / LINE) || 1),
+    value: text,
     spellcheck: "false",
     oninput: () => set(read(box.value)),
   });
@@ -247,13 +265,14 @@ function wordsOf(schema) {
     : null;
 }
 
-/** Bounds that the schema itself states. @param {any} schema */
-function limits({ minimum, maximum, exclusiveMinimum }) {
+/** Bounds that the schema itself states, in the reader's unit. @param {any} schema @param {string} path */
+function limits({ minimum, maximum, exclusiveMinimum }, path) {
+  const bound = (/** @type {number} */ value) => number(readersNumber(path, value));
   // Every count has 0 as its least in a schema; what is less than that no text says otherwise.
   return [
-    exclusiveMinimum !== undefined && `above ${number(exclusiveMinimum)}`,
-    minimum > 0 && `${number(minimum)} or more`,
-    maximum !== undefined && `at most ${number(maximum)}`,
+    exclusiveMinimum !== undefined && `above ${bound(exclusiveMinimum)}`,
+    minimum > 0 && `${bound(minimum)} or more`,
+    maximum !== undefined && `at most ${bound(maximum)}`,
   ]
     .filter(Boolean)
     .join(", ");

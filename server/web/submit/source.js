@@ -1,11 +1,34 @@
 // The scenario of a new sweep: a preset, or a scenario of the reader's own from a file or as JSON, with its fields.
 
 import { get, Problem, send } from "../data/api.js";
-import { choice, fill, h } from "../ui/dom.js";
+import { fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { field } from "./problems.js";
 import { ScenarioForm } from "./scenario-form.js";
 import { object, parsed } from "./values.js";
+
+/** Groups of presets by the beginning of their names, in order; other folders are groups of their own. @type {[RegExp, string][]} */
+const GROUPS = [
+  [/^[^/]+$/, "The paper's string"],
+  [/^wells\//, "Wells"],
+  [/^closed\//, "Accuracy"],
+  [/^hard\//, "Hard cases"],
+];
+
+/**
+ * Presets in groups.
+ * @param {{name: string}[]} scenarios
+ * @returns {[group: string, names: string[]][]}
+ */
+export function grouped(scenarios) {
+  /** @type {Map<string, string[]>} */
+  const groups = new Map(GROUPS.map(([, group]) => [group, []]));
+  for (const { name } of scenarios) {
+    const group = GROUPS.find(([pattern]) => pattern.test(name))?.[1] ?? name.slice(0, name.indexOf("/"));
+    groups.set(group, [...(groups.get(group) ?? []), name]);
+  }
+  return [...groups].filter(([, names]) => names.length);
+}
 
 export class Source {
   #scenarios;
@@ -23,8 +46,8 @@ export class Source {
   /**
    * @param {any[]} scenarios the presets
    * @param {any} start the request that the form begins with
-   * @param {{changed: () => void, refused: (problems: import("./problems.js").Found[]) => void, took: (set: Record<string, unknown>) => void, changes: import("./scenario-form.js").Changes}} on
-   *   `took` gets the changes of a file
+   * @param {{changed: () => void, refused: (problems: import("./problems.js").Found[]) => void, took: (set: Record<string, unknown>) => void, shown: (scenario: any) => void, changes: import("./scenario-form.js").Changes}} on
+   *   `took` gets the changes of a file, `shown` the scenario or `null` if it cannot be read
    * @param {AbortSignal} signal
    */
   constructor(scenarios, start, on, signal) {
@@ -56,13 +79,22 @@ export class Source {
   }
 
   #draw() {
-    const options = [
-      /** @type {[string, string]} */ (["", "— my own, from a file or pasted as JSON"]),
-      ...this.#scenarios.map(({ name }) => /** @type {[string, string]} */ ([name, name])),
-    ];
+    const select = h(
+      "select",
+      { "aria-label": "Scenario", onchange: () => attend(this.#choose(select.value), this.#signal) },
+      h("option", { value: "" }, "— my own, from a file or pasted as JSON"),
+      grouped(this.#scenarios).map(([group, names]) =>
+        h(
+          "optgroup",
+          { label: group },
+          names.map((name) => h("option", { value: name }, name.slice(name.indexOf("/") + 1))),
+        ),
+      ),
+    );
+    select.value = this.#preset;
     fill(
       this.element,
-      choice("Scenario", options, this.#preset, (value) => attend(this.#choose(value), this.#signal)),
+      h("label", { class: "field" }, h("span", {}, "Scenario"), select),
       h(
         "p",
         { class: "small soft" },
@@ -113,11 +145,9 @@ export class Source {
     const source = this.#preset || this.#text.value;
     if (source === this.#fieldsOf) return;
     this.#fieldsOf = source;
-    if (!this.#preset) {
-      this.#fields.show(object(source));
-      return;
-    }
-    const scenario = await this.#scenarioOf(this.#preset);
-    if (source === this.#fieldsOf) this.#fields.show(scenario);
+    const scenario = this.#preset ? await this.#scenarioOf(this.#preset) : object(source);
+    if (source !== this.#fieldsOf) return;
+    this.#fields.show(scenario);
+    this.#on.shown(scenario);
   }
 }

@@ -1,5 +1,6 @@
 // A field of the form for a survey of the well.
 
+import { unitSystem } from "../data/settings.js";
 import { NoSurvey, readSurvey } from "../data/survey.js";
 import { number, say as sayValue } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
@@ -13,7 +14,8 @@ import { choice, fill, h } from "../ui/dom.js";
  * @returns {{element: HTMLElement, read: () => Station[] | undefined, say: () => void}} `say` sums the survey up again, in the units that now hold
  */
 export function surveyField(given, changed) {
-  let unit = "m";
+  // Stations of a request are in metres.
+  let unit = !given && unitSystem() === "field" ? "ft" : "m";
   const summary = h("p", { class: "small soft", "aria-live": "polite" });
   const text = h("textarea", {
     class: "code",

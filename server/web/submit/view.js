@@ -12,6 +12,7 @@ import { snippets } from "../ui/snippets.js";
 import { plannedPart } from "./plan.js";
 import { Preview } from "./preview.js";
 import { field, mark } from "./problems.js";
+import { isRecording, Recording } from "./recording.js";
 import { Rows } from "./rows.js";
 import { submitLines } from "./snippets.js";
 import { Source } from "./source.js";
@@ -127,6 +128,7 @@ class NewSweep {
   #verify;
   #axes;
   #changes;
+  #recording;
   #survey;
   #source;
   #design;
@@ -171,13 +173,15 @@ class NewSweep {
     const set = Object.entries(start.set ?? {}).filter(
       ([name, value]) => !(name === "accuracy" && typeof value === "string") && name !== SURVEY,
     );
-    this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed);
+    this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isRecording);
+    this.#recording = new Recording(this.#changes, signal);
     this.#survey = surveyField(start.set?.[SURVEY], changed);
     this.preview = new Preview(signal);
     const on = {
       changed,
       refused: (/** @type {import("./problems.js").Found[]} */ problems) => this.#mark(problems),
       took: (/** @type {Record<string, unknown>} */ given) => this.#take(given),
+      shown: (/** @type {any} */ scenario) => this.#recording.show(scenario),
       changes: this.#changes,
     };
     this.#source = new Source(scenarios, start, on, signal);
@@ -187,13 +191,15 @@ class NewSweep {
       this.#scenarioPart(),
       this.#parametersPart(),
       this.#namePart(),
+      h("div", { class: "panel submit" }, this.#submit, this.#general),
     );
     this.#drawDesign();
-    // Entries stay: the plan alone is made again, in the units and colours that now hold.
     settings.addEventListener(
       "change",
       () => {
         this.#survey.say();
+        this.#axes.convert();
+        this.#changes.convert();
         changed();
       },
       { signal },
@@ -221,6 +227,7 @@ class NewSweep {
       h("div", { class: "controls" }, accuracy, kept),
       h("h2", {}, "Changes to the scenario"),
       this.#changes.element,
+      this.#recording.element,
       this.#source.fields,
       this.#survey.element,
     );
@@ -247,14 +254,7 @@ class NewSweep {
       field("Tags", this.#tags, "/tags"),
       field("Verify a sample", this.#verify, "/verify"),
     );
-    return h(
-      "section",
-      { class: "panel", "aria-label": "Name" },
-      controls,
-      this.#general,
-      this.#beside,
-      this.#submit,
-    );
+    return h("section", { class: "panel", "aria-label": "Name" }, controls, this.#beside);
   }
 
   get #isDrawn() {
@@ -284,6 +284,7 @@ class NewSweep {
   /** Takes the changes of a scenario file; parameters that it sets are not varied. @param {Record<string, unknown>} set */
   #take(set) {
     this.#changes.replace(rowsOf(set));
+    this.#recording.draw();
     this.#axes.keep(({ name }) => !((ALIASES[name] ?? name) in set));
   }
 
@@ -354,6 +355,7 @@ class NewSweep {
       if (mine !== this.#generation) return;
       this.#mark(answer.warnings ?? []);
       fill(this.planned, ...plannedPart(answer));
+      this.#recording.plan(answer.plan);
       this.#submit.disabled = this.#isSent || !maySubmit();
       this.#submit.title = maySubmit() ? "" : MAY_NOT;
       this.#submit.textContent = `Submit ${answer.total} ${answer.total === 1 ? "point" : "points"}`;

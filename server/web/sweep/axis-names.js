@@ -4,8 +4,9 @@
 const [CHARACTER, MARGINS] = [6.6, { l: 80, r: 150 }];
 /** Longest line of a name, in characters, and the least distance of axes whose names have such lines [pixels]. */
 const [LINE, LEAST_APART] = [16, 118];
-/** Height of a line below the axes, and of what is there besides [pixels]. */
-const [LINE_PX, BELOW] = [16, 44];
+/** Height of a line below the axes, and of what is there besides, the value at the end of the axis among it [pixels]. */
+export const LINE_PX = 16;
+const BELOW = 44;
 
 /**
  * A name in lines, at its blanks.
@@ -27,7 +28,7 @@ export function wrapped(name) {
  * Places of the names of axes.
  * @param {string[]} names
  * @param {number} width of the picture's place [pixels]
- * @returns {{labels: string[], side: "top" | "bottom", width: number, margin: {t: number, b: number, l: number, r: number}}} with the least width of the picture
+ * @returns {{lines: string[][], side: "top" | "bottom", width: number, margin: {t: number, b: number, l: number, r: number}}} with the least width of the picture
  */
 export function axisNames(names, width) {
   // A name is centred at its axis: neighbours share the room between them, and the outermost have that of the margins.
@@ -36,12 +37,12 @@ export function axisNames(names, width) {
   const r = Math.max(MARGINS.r, half(names[names.length - 1]) + 8);
   const apart = (width - l - r) / Math.max(1, names.length - 1);
   const fits = names.slice(1).every((name, order) => half(names[order]) + half(name) <= apart);
-  if (fits) return { labels: names, side: "top", width: 0, margin: { l, r, t: 70, b: 30 } };
+  if (fits)
+    return { lines: names.map((name) => [name]), side: "top", width: 0, margin: { l, r, t: 70, b: 30 } };
   const lines = names.map(wrapped);
   const most = Math.max(...lines.map(({ length }) => length));
   return {
-    // The first line is that of the value at the end of the axis.
-    labels: lines.map((one) => ["", ...one].join("<br>")),
+    lines,
     side: "bottom",
     width: (names.length - 1) * LEAST_APART + MARGINS.l + MARGINS.r,
     margin: { ...MARGINS, t: 30, b: BELOW + LINE_PX * (most + 1) },

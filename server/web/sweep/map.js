@@ -5,6 +5,7 @@ import { theme } from "../data/settings.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
+import { MANY } from "../draw/cloud.js";
 import { BLACK, inkOn, inkOnClass, WHITE } from "../draw/colours.js";
 import {
   adjust,
@@ -26,7 +27,7 @@ import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
 import { CLASS, wordColour, wordsOf } from "./categories.js";
 import { FinerGrid } from "./finer-grid.js";
-import { MANY, preferred, undelayed } from "./part.js";
+import { preferred, undelayed } from "./part.js";
 
 /** Designs that draw their points: these have no slices. */
 const DRAWN = ["latin_hypercube", "sobol"];
@@ -660,7 +661,7 @@ function markTrace(
     line: { width: 0 },
   };
   return {
-    type: isMany ? "scattergl" : "scatter",
+    type: isMany ? "dots" : "scatter",
     mode: "markers",
     x: rows.map((index) => at(x, xs[index])),
     y: rows.map((index) => at(y, ys[index])),
@@ -683,7 +684,7 @@ function markTrace(
 function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys, doubts }, at) {
   const isMany = marked.length > MANY;
   return {
-    type: isMany ? "scattergl" : "scatter",
+    type: isMany ? "dots" : "scatter",
     mode: "markers",
     name,
     x: marked.map((index) => at(x, xs[index])),

@@ -46,14 +46,15 @@ export function axisControls(onChange, onMove) {
   /** @param {Axis[]} axes */
   function show(axes) {
     const wanted = JSON.stringify(axes.map((axis) => [axis.title, axis.ends, rangesOf(axis).length]));
-    if (wanted !== made) make(axes);
+    const isNew = wanted !== made;
+    if (isNew) make(axes);
     made = wanted;
     for (const axis of axes) {
       rangesOf(axis).forEach((range, order) => {
         range.forEach((end, side) => {
           const input = inputs.get(axis.name)?.[order][side];
           // A field that is being typed in stays.
-          if (input && input !== document.activeElement)
+          if (input && (isNew || input !== document.activeElement))
             input.value = Number.isFinite(end) ? String(rounded(end)) : "";
         });
       });

@@ -1,23 +1,18 @@
 // All swept parameters and a few results side by side, a line a point.
 
 import { say, shown, unit } from "../data/units.js";
-import { canvas, colourBar, draw, laidOut, lineScale } from "../draw/plots.js";
+import { laidOut } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { link, rounded } from "../ui/router.js";
-import { axisNames } from "./axis-names.js";
 import { axisControls } from "./parallel-controls.js";
-import { followLines, isKept, rangesOf } from "./parallel-lines.js";
+import { endsOf, keptLines } from "./parallel-lines.js";
+import { ParallelPicture } from "./parallel-picture.js";
 import { preferred, undelayed } from "./part.js";
 
 const HOW =
-  "Drag along an axis, or enter a range below, to filter the points. Drag an axis by its name, or use the buttons below, to move it. Point at a line to read its values.";
-
-/** Form of the numbers at axes: no letters for powers of a thousand, since units have their own. */
-const TICKS = ".4~r";
-/** Least number whose thousands are apart. */
-const FIVE_DIGITS = 1e4;
+  "Drag along an axis, or enter a range below, to filter the points; drag a filter or its ends to change it, and click it to remove it. Drag an axis by its name, or use the buttons below, to move it. Point at a line, or move the point cursor, to read its values.";
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */
@@ -55,34 +50,68 @@ function usualNames(context) {
 
 class ParallelCoordinates {
   #context;
-  #place = canvas("Parallel coordinates of the sweep", "parallel", "tall", "whole");
+  #picture;
   /** On a narrow screen the picture is scrolled sideways. */
-  #scroller = h(
-    "div",
-    { class: "scroll", tabindex: "0", role: "region", "aria-label": "Parallel coordinates, scrollable" },
-    this.#place,
-  );
+  #scroller;
   #caption = h("figcaption", {});
-  #reading = h("p", { class: "small", role: "status", "aria-label": "The point that the mouse is at" });
+  #reading = h("p", { class: "small", role: "status", "aria-label": "The point that is read" });
   #left = h("p", { class: "small", role: "status", "aria-label": "Points that are kept" });
   #controls = h("div", { class: "controls" });
+  #cursor = h("input", {
+    type: "range",
+    min: 0,
+    max: 0,
+    step: 1,
+    value: "0",
+    "aria-label": "Point cursor",
+    onfocus: () => this.#moveCursor(),
+    oninput: () => this.#moveCursor(),
+  });
   #fields = axisControls(
     (name, ranges) => this.#filter(name, ranges),
     (name, places) => this.#move(name, places),
   );
   #begin = generations();
+  /** @type {Dimension[]} */
+  #dimensions = [];
   /** Reads the point of a line. @type {(line: number) => void} */
   #readLine = () => {};
 
   /** @param {Context} context */
   constructor(context) {
     this.#context = context;
-    followLines(this.#place, (line) => this.#readLine(line), context.signal);
+    this.#picture = new ParallelPicture(
+      {
+        filtered: () => this.#tell(),
+        released: () =>
+          context.keep({
+            brush:
+              this.#dimensions
+                .flatMap(({ name, ranges }) => ranges.map((range) => writtenRange(name, range)))
+                .join(",") || null,
+          }),
+        moved: (names) => this.#keep(this.#inLink(names)),
+        read: (line) => this.#readLine(line),
+      },
+      context.signal,
+    );
+    this.#scroller = h(
+      "div",
+      { class: "scroll", tabindex: "0", role: "region", "aria-label": "Parallel coordinates, scrollable" },
+      this.#picture.element,
+    );
+    const cursor = h(
+      "label",
+      { class: "field wide" },
+      h("span", {}, "Point cursor: arrow keys move it over the points that are kept"),
+      this.#cursor,
+    );
     this.element = h(
       "div",
       {},
       this.#controls,
       h("figure", {}, this.#scroller, this.#reading, this.#left, this.#caption),
+      cursor,
       this.#fields.element,
     );
   }
@@ -141,15 +170,7 @@ class ParallelCoordinates {
     }
     await laidOut(this.#scroller, signal);
     if (!isNewest()) return;
-    const named = axisNames(
-      names.map((name) => depths.title(name)),
-      this.#scroller.clientWidth,
-    );
-    this.#place.style.minWidth = `${named.width}px`;
-    const dimensions = this.#dimensions(names, columns, rows).map((dimension, order) => ({
-      ...dimension,
-      label: named.labels[order],
-    }));
+    this.#dimensions = this.#dimensionsOf(names, columns, rows);
     fill(
       this.#caption,
       HOW,
@@ -157,27 +178,14 @@ class ParallelCoordinates {
         (name) => biases.say(name) && ` ${depths.label(name)}: ${biases.say(name)}`,
       ),
     );
-    const line = {
-      color: dimensions[names.indexOf(colour)].values,
-      colorscale: lineScale(),
-      colorbar: colourBar(depths.title(colour)),
-    };
-    const trace = {
-      type: "parcoords",
-      dimensions,
-      line,
-      labelside: named.side,
-      labelfont: { size: 12 },
-    };
-    const shape = await draw(this.#place, [trace], { margin: named.margin }, signal);
-    this.#readLine = (number) =>
+    this.#readLine = (line) =>
       this.#read(
-        Number(ordinals[rows[number]]),
+        Number(ordinals[rows[line]]),
         names,
-        columns.map((column) => column[rows[number]]),
+        columns.map((column) => column[rows[line]]),
       );
-    this.#tell(dimensions);
-    this.#follow(shape);
+    this.#picture.show(this.#dimensions, names.indexOf(colour));
+    this.#tell();
   }
 
   #drawControls() {
@@ -189,6 +197,10 @@ class ParallelCoordinates {
       this.#controls,
       choice("Colour and last axis", options, colour, (value) => this.#keep({ colour: value })),
       choice("Further axis", options, beside, (value) => this.#keep({ beside: value })),
+      /** @type {("png" | "svg")[]} */ (["png", "svg"]).map((format) => {
+        const save = () => attend(this.#picture.save(format), this.#context.signal);
+        return h("button", { onclick: save }, `Save as ${format.toUpperCase()}`);
+      }),
     );
     return { colour, beside };
   }
@@ -197,56 +209,41 @@ class ParallelCoordinates {
    * @param {string[]} names
    * @param {import("../data/sweep-table.js").Values[]} columns
    * @param {number[]} rows that have all values
+   * @returns {Dimension[]}
    */
-  #dimensions(names, columns, rows) {
+  #dimensionsOf(names, columns, rows) {
     const kept = brushed(this.#context.query.get("brush") ?? "");
-    return names.map((name, order) => {
-      const values = /** @type {number[]} */ (
+    return names.map((name, order) => ({
+      name,
+      title: this.#context.depths.title(name),
+      values: /** @type {number[]} */ (
         shown(
           name,
           rows.map((index) => /** @type {number} */ (columns[order][index])),
         )
-      );
-      const ranges = kept.get(name)?.map((range) => range.map((end) => end / unit(name).size));
-      return {
-        name,
-        tickformat: values.some((value) => Math.abs(value) >= FIVE_DIGITS) ? `,${TICKS}` : TICKS,
-        constraintrange: ranges && closed({ name, values, constraintrange: ranges }),
-        values,
-      };
-    });
+      ),
+      ranges: (kept.get(name) ?? []).map((range) => range.map((end) => end / unit(name).size)),
+    }));
   }
 
-  /** Takes filters and the order of axes from the picture when the reader drags there. @param {any} shape */
-  #follow(shape) {
-    shape.removeAllListeners?.("plotly_restyle");
-    shape.on?.("plotly_restyle", () => {
-      /** @type {Dimension[]} */
-      const dimensions = shape.data[0].dimensions;
-      this.#context.keep({
-        brush: written(dimensions) || null,
-        ...this.#inLink(dimensions.map(({ name }) => name)),
-      });
-      this.#tell(dimensions);
-    });
+  /** Shows the filters as numbers, and how many points pass them. */
+  #tell() {
+    const dimensions = this.#dimensions;
+    this.#fields.show(dimensions.map((dimension) => ({ ...dimension, ends: endsOf(dimension) })));
+    const kept = keptLines(dimensions).length;
+    const isFiltered = dimensions.some(({ ranges }) => ranges.length);
+    this.#left.textContent = isFiltered ? `${kept} of ${dimensions[0].values.length} points are kept.` : "";
+    this.#cursor.max = String(Math.max(0, kept - 1));
+    this.#cursor.disabled = !kept;
   }
 
-  /** Shows the filters of the picture as numbers, and how many points pass them. @param {Dimension[]} dimensions */
-  #tell(dimensions) {
-    this.#fields.show(
-      dimensions.map((dimension) => ({
-        name: dimension.name,
-        title: this.#context.depths.title(dimension.name),
-        ends: endsOf(dimension),
-        ranges: opened(dimension),
-      })),
-    );
-    const filters = dimensions.filter((dimension) => rangesOf(dimension).length);
-    const all = dimensions[0].values.length;
-    const kept = dimensions[0].values.filter((_, line) =>
-      filters.every((dimension) => isKept(dimension, line)),
-    ).length;
-    this.#left.textContent = filters.length ? `${kept} of ${all} points are kept.` : "";
+  /** Marks and reads the point of the cursor. */
+  #moveCursor() {
+    const line = keptLines(this.#dimensions)[this.#cursor.valueAsNumber];
+    if (line === undefined) return;
+    this.#picture.mark(line);
+    this.#readLine(line);
+    this.#cursor.setAttribute("aria-valuetext", this.#reading.textContent ?? "");
   }
 
   /** Shows the point of a line. @param {number} ordinal @param {string[]} names @param {unknown[]} values */
@@ -279,43 +276,9 @@ function brushed(text) {
   return kept;
 }
 
-/** The same of a picture. @param {import("./parallel-lines.js").Dimension[]} dimensions */
-function written(dimensions) {
-  return dimensions
-    .flatMap((dimension) => opened(dimension).map((range) => writtenRange(dimension.name, range)))
-    .join(",");
-}
-
 /** @param {string} name @param {number[]} range in the unit in which it is shown */
 function writtenRange(name, range) {
   return [name, ...range.map((end) => (Number.isFinite(end) ? rounded(end * unit(name).size) : ""))].join(
     ":",
   );
-}
-
-/** Least and largest value of an axis. @param {import("./parallel-lines.js").Dimension} dimension */
-function endsOf({ values }) {
-  return [
-    values.reduce((a, b) => Math.min(a, b), Infinity),
-    values.reduce((a, b) => Math.max(a, b), -Infinity),
-  ];
-}
-
-/** Filters of an axis, whose ends are infinite at or beyond the ends of its values, and then need not be written. @param {import("./parallel-lines.js").Dimension} dimension */
-function opened(dimension) {
-  const [least, largest] = endsOf(dimension);
-  const ranges = rangesOf(dimension).map(([from, to]) => [
-    from <= least ? -Infinity : from,
-    to >= largest ? Infinity : to,
-  ]);
-  return ranges.filter((range) => range.some(Number.isFinite));
-}
-
-/** The same with finite ends, as the drawing library needs them. @param {import("./parallel-lines.js").Dimension} dimension */
-function closed(dimension) {
-  const [least, largest] = endsOf(dimension);
-  return rangesOf(dimension).map(([from, to]) => [
-    from === -Infinity ? Math.min(least, to) : from,
-    to === Infinity ? Math.max(largest, from) : to,
-  ]);
 }

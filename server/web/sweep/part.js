@@ -28,9 +28,6 @@ import { CLASS } from "./categories.js";
  * @typedef {{element: HTMLElement, draw: () => Promise<void>, fields: () => string[], others?: () => import("./snippets.js").Shown[], lines?: () => import("../ui/snippets.js").Lines}} Part
  */
 
-/** Points beyond which marks are drawn by WebGL. */
-export const MANY = 3000;
-
 /**
  * The first drawing waits for its place in the page, which the view takes when it is complete; so it is not waited for.
  * @param {() => Promise<void>} redraw

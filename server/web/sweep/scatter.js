@@ -2,12 +2,13 @@
 
 import { isText } from "../data/sweep-table.js";
 import { label, say, shown } from "../data/units.js";
+import { MANY } from "../draw/cloud.js";
 import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { CLASS, wordColour, wordsOf } from "./categories.js";
-import { MANY, preferred, undelayed } from "./part.js";
+import { preferred, undelayed } from "./part.js";
 
 /** @typedef {import("./part.js").Context} Context */
 /** @typedef {{names: string[], x: string, y: string, colour: string, isLogX: boolean, isLogY: boolean}} Chosen */
@@ -24,12 +25,7 @@ const SCALES = [
  * @returns {import("./part.js").Part}
  */
 export function scatter(context) {
-  const place = canvas(
-    "Scatter of the points",
-    "scatter",
-    "tall",
-    context.sweep.counts.total > MANY ? "whole" : "flat",
-  );
+  const place = canvas("Scatter of the points", "scatter", "tall");
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const begin = generations();
@@ -125,14 +121,13 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
   const [atX, atY] = [at(x, xs), at(y, ys)];
   const part = (/** @type {string} */ name, /** @type {Values} */ values, /** @type {number} */ index) =>
     `${depths.label(name)} ${say(name, values[index])}${biases.beside(name, Number(ordinals[index]))}`;
-  const text = isMany
-    ? undefined
-    : ordinals.map((ordinal, index) =>
-        [`point ${ordinal}`, part(x, xs, index), part(y, ys, index), part(colour, colours, index)].join(
-          "<br>",
-        ),
-      );
-  const base = { type: isMany ? "scattergl" : "scatter", mode: "markers", hoverinfo: text ? "text" : "x+y" };
+  const tell = (/** @type {number} */ index) =>
+    [`point ${ordinals[index]}`, part(x, xs, index), part(y, ys, index), part(colour, colours, index)].join(
+      "<br>",
+    );
+  // Of many points, only the one next to the mouse is put into words.
+  const text = isMany ? undefined : ordinals.map((_, index) => tell(index));
+  const base = { type: isMany ? "dots" : "scatter", mode: "markers", hoverinfo: "text" };
   const size = isMany ? 4 : 8;
   if (!isText(colours)) {
     const color = shown(colour, /** @type {(number | null)[]} */ (colours));
@@ -142,6 +137,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
         x: atX,
         y: atY,
         text,
+        tell: isMany ? tell : undefined,
         customdata: ordinals,
         marker: { size, color, colorscale: lineScale(), colorbar: colourBar(depths.title(colour)) },
       },
@@ -155,11 +151,12 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
       x: rows.map((index) => atX[index]),
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
+      tell: isMany ? (/** @type {number} */ row) => tell(rows[row]) : undefined,
       customdata: rows.map((index) => ordinals[index]),
       marker: {
         size,
         color: wordColour(colour, word, LINES[order % LINES.length]),
-        symbol: order,
+        symbol: isMany ? "square" : order,
       },
       showlegend: true,
     };

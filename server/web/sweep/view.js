@@ -10,6 +10,7 @@ import { label, nodeOfColumn, say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend, reported, notice } from "../ui/notices.js";
 import { progressPart, when } from "../ui/progress.js";
+import { reportLink } from "../ui/report-link.js";
 import { go, keep, link } from "../ui/router.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { snippets } from "../ui/snippets.js";
@@ -344,6 +345,7 @@ function headPart(sweep, { pace, before }, act, change) {
         button("retry", "Retry failed and cancelled", canRetry),
         !isFinal(sweep) && maySubmit() && priority,
         h("a", { class: "button", href: link(["new"], { from: sweep.id }) }, "New sweep like this"),
+        reportLink(sweep.links.self),
         h("a", { class: "button", href: sweep.links.export, download: "" }, "Download all"),
       ),
     ),

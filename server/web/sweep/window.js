@@ -1,7 +1,7 @@
 // Operating window of a sweep: the class of each point over the parameters, by limits that the reader moves.
 
 import { get, Problem } from "../data/api.js";
-import { CLASSES, classWords } from "../data/judgement.js";
+import { classes, classWords } from "../data/judgement.js";
 import { changedLimits, limitsText, parseLimits } from "../data/limits.js";
 import { classWord } from "../draw/class-word.js";
 import { debounced, fill, h } from "../ui/dom.js";
@@ -12,7 +12,9 @@ import { python, tableLines } from "../ui/snippets.js";
 import { CLASS } from "./categories.js";
 import { LimitInputs } from "./limit-inputs.js";
 import { SweepMap } from "./map.js";
+import { OperatingPoint } from "./operating-point.js";
 import { undelayed } from "./part.js";
+import { RefineEdges } from "./refine-edges.js";
 
 /** Time without a change after which points are judged anew [ms]. */
 const REST_MS = 250;
@@ -41,6 +43,7 @@ class OperatingWindow {
   #begin = generations();
   #inputs;
   #drawMap;
+  #point;
   #wrong = h("p", { class: "wrong", role: "alert" });
   #counts = h("ul", { class: "counts", "aria-label": "Points by class" });
   #uncertain = h("div", {});
@@ -67,7 +70,16 @@ class OperatingWindow {
       wordOf: (ordinal) => this.#points.get(ordinal)?.word ?? null,
       doubtOf: (ordinal) => this.#points.get(ordinal)?.doubt ?? "",
     });
-    this.#drawMap = undelayed(() => map.redraw(), context);
+    const draw = async () => {
+      await map.redraw();
+      await this.#point.redraw((ordinal) => this.#points.get(ordinal));
+    };
+    this.#point = new OperatingPoint(
+      context,
+      /** @type {HTMLElement} */ (map.element.querySelector(".plot")),
+      () => attend(draw(), context.signal),
+    );
+    this.#drawMap = undelayed(draw, context);
     this.element = h(
       "div",
       {},
@@ -75,6 +87,8 @@ class OperatingWindow {
       this.#wrong,
       this.#counts,
       map.element,
+      this.#point.element,
+      new RefineEdges(context, () => this.#changes).element,
       this.#uncertain,
       this.#links,
     );
@@ -123,10 +137,11 @@ class OperatingWindow {
       ]),
     );
     const counts = /** @type {Record<string, number>} */ (attributes.points_by_class);
-    const judged = CLASSES.reduce((sum, name) => sum + (counts[name] ?? 0), 0);
+    const known = classes().map(({ word }) => word);
+    const judged = known.reduce((sum, name) => sum + (counts[name] ?? 0), 0);
     fill(
       this.#counts,
-      CLASSES.filter((name) => counts[name]).map((name) => h("li", {}, classWord(name), ` ${counts[name]}`)),
+      known.filter((name) => counts[name]).map((name) => h("li", {}, classWord(name), ` ${counts[name]}`)),
       judged < ordinals.length && h("li", {}, `without a result ${ordinals.length - judged}`),
     );
     this.#listUncertain();

@@ -30,7 +30,6 @@ COMPARED = {
     "history": "Histories",
     "rotation": "Rotation and torque",
     "spectrum": "Full spectra",
-    "well": "Well",
     "energy": "Energy",
 }
 """Views of a comparison that have one picture, and its name."""
@@ -48,9 +47,18 @@ Opens = Callable[..., Page]
 def drawn(page: Page, name: str) -> Locator:
     """A picture, once plotly has drawn it."""
     picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator(".main-svg"))
-    # WebGL without a graphics card takes its time.
     expect(picture.first).to_be_visible(timeout=30_000)
     return picture.first
+
+
+def parallel(page: Page) -> Locator:
+    """The picture of parallel coordinates, once it is drawn."""
+    picture = page.get_by_role("figure", name="Parallel coordinates")
+    expect(picture.locator(".axis-title").first).to_be_visible()
+    # What comes later is drawn anew.
+    page.wait_for_load_state("networkidle")
+    picture.scroll_into_view_if_needed()
+    return picture
 
 
 def until(page: Page, holds: Callable[[], bool]) -> None:
@@ -133,9 +141,9 @@ def said(bias: float) -> str:
     return "below 0.01 %" if abs(bias) < 1e-4 else f"{sign}{float(f'{abs(100 * bias):.2g}'):g} %"
 
 
-def scene(page: Page) -> Locator:
-    """The picture of the string, once it is drawn."""
-    picture = page.get_by_role("application", name=re.compile("The string moving"))
+def scene(page: Page, name: str = "The string moving") -> Locator:
+    """The first picture of a string, once it is drawn."""
+    picture = page.get_by_role("application", name=re.compile(name)).first
     expect(picture).to_have_attribute("data-drawn", re.compile(r"\d+"), timeout=30_000)
     return picture
 

@@ -11,7 +11,21 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
-from browsing import COMPARED, GONE, MINUS, NASTY, REFUSED, RULES_OF_THEME, Opens, drag, drawn, requested, until
+from browsing import (
+    COMPARED,
+    GONE,
+    MINUS,
+    NASTY,
+    REFUSED,
+    RULES_OF_THEME,
+    Opens,
+    drag,
+    drawn,
+    parallel,
+    requested,
+    trace,
+    until,
+)
 from drillsweep import Axis, Client, Outputs, Sweep
 from service import SHORT, Service, make_token, revoke_token, tokens_of
 
@@ -58,7 +72,8 @@ def test_what_is_typed_stays_when_colours_and_units_are_switched(opened: Opens) 
     expect(values).to_have_value("0.015, not a number")
     page.get_by_role("button", name="Units: SI").click()
     expect(page.get_by_role("button", name="Units: field")).to_be_visible()
-    expect(values).to_have_value("0.015, not a number")
+    # The number stays in other units: 0.015 m3/s.
+    expect(values).to_have_value("237.755, not a number")
 
 
 def test_a_sweep_like_another_one_is_its_request(opened: Opens, client: Client) -> None:
@@ -153,6 +168,8 @@ def test_every_view_of_a_sweep_is_shown(
         expect(page.get_by_text("No point of this sweep has failed.")).to_be_visible()
     elif view == "difference":
         expect(page.get_by_text("Choose the sweep whose results")).to_be_visible()
+    elif view == "parallel":
+        assert parallel(page).locator(".axis-brush").count() == 5
     else:
         drawn(page, "." if view != "effects" else "Shares of the variance")
 
@@ -225,7 +242,8 @@ def test_the_map_holds_the_parameters_that_it_does_not_show(opened: Opens, named
 def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=table&sort=flow_rate&order=down")
     first = page.locator(".rows tbody tr:not(.gap)").first
-    expect(first.locator("td").nth(3)).to_have_text("0.04")
+    # After the tick, number, state and class of a point.
+    expect(first.locator("td").nth(4)).to_have_text("0.04")
     page.get_by_role("searchbox").fill("mud_density>1500 flow_rate=0.01")
     expect(page.get_by_text("2 of 8 points")).to_be_visible()
     page.get_by_role("button", name=re.compile("Units")).click()
@@ -239,7 +257,7 @@ def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sw
 
 @pytest.mark.parametrize(
     ("view", "picture"),
-    [("profiles", "Profiles"), ("motion", "Orbit of node"), ("well", "The well"), ("energy", "Energy by account")],
+    [("profiles", "Profiles"), ("motion", "Orbit of node"), ("energy", "Energy by account")],
 )
 def test_every_view_of_a_point_is_shown(opened: Opens, named: Sweep, view: str, picture: str) -> None:
     drawn(opened(f"#/sweeps/{named.id}/points/1?view={view}"), picture)
@@ -373,6 +391,23 @@ def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: 
     page = opened(f"#/sweeps/{verified.id}/points/{ordinal}?view=about")
     trust = page.get_by_role("region", name="How far to trust it")
     expect(trust.get_by_text(re.compile(r"Verified against reference runs: .*node 49 \(bias "))).to_be_visible()
+    error = page.get_by_role("group", name="Error of orbit size")
+    sizes = [column for column in table.columns if column.startswith("bias_orbit_radius_rms_")]
+    worst = 100 * max(abs(float(table[column][0])) for column in sizes)
+    expect(error.locator("div", has_text="measured by verification")).to_contain_text(f"{float(f'{worst:.2g}'):g} %")
+    summary = verified.point(ordinal).summary
+    assert summary is not None
+    promised = summary["promised_error"]
+    expect(error.locator("div", has_text="promised")).to_contain_text(f"{100 * promised:g} %")
+    expect(error).to_contain_text(
+        f"Believe the measurement, {'within' if worst <= 100 * promised else 'beyond'} the promise"
+    )
+    costs = drawn(page, "Error of orbit size against processor time")
+    itself, others = trace(costs, 1), trace(costs, 2)
+    assert itself["y"] == [pytest.approx(worst)]
+    times = verified.point(int(table["ordinal"][1])).provenance
+    assert times is not None
+    assert others["x"] == [pytest.approx(times["transient_cpu_time"] + times["statics_cpu_time"])]
 
 
 def test_two_sweeps_are_compared_where_both_have_points(opened: Opens, client: Client, sweep: Sweep) -> None:

@@ -29,6 +29,24 @@ def test_a_point_begins_with_its_class_and_the_numbers_behind_it(opened: Opens, 
     expect(side_force).to_contain_text("klbf")
 
 
+def test_an_overview_leads_from_small_pictures_to_their_views(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1")
+    summary = sweep.point(1).summary
+    assert summary is not None
+    sizes = {node: summary[f"orbit_radius_rms_{node}"] for node in (10, 49, 282)}
+    largest = max(sizes, key=lambda node: float(sizes[node]))
+    overview = page.locator("details.overview")
+    tiles = overview.get_by_role("link")
+    expect(tiles).to_have_count(4)
+    track = overview.get_by_role("img", name=re.compile("String over depth: drill pipe, .*bit to 200 m"))
+    expect(track).to_be_visible()
+    for picture in overview.get_by_role("img").all():
+        assert picture.evaluate("canvas => canvas.getContext('2d').getImageData(0, 0, 300, 100).data.some(Boolean)")
+    expect(overview).to_contain_text(f"{float(f'{1000 * sizes[largest]:.3g}'):g} mm rms")
+    tiles.filter(has_text="looking downhole").click()
+    expect(page.get_by_role("figure", name=re.compile(f"Orbit of node {largest} "))).to_be_visible()
+
+
 def test_a_point_without_a_result_has_no_headline(opened: Opens, client: Client) -> None:
     waiting = client.submit("paper-200m", name="waiting", priority=-10)
     waiting.cancel()
@@ -118,3 +136,64 @@ def test_a_link_holds_the_limits_of_a_window(opened: Opens, sweep: Sweep) -> Non
     page.get_by_role("button", name="Units: SI. Switch").click()
     force = page.get_by_label("largest side force of all nodes [klbf]", exact=True)
     expect(force).to_have_value("4.496")
+
+
+def test_the_operating_point_names_the_nearest_computed_point(opened: Opens, named: Sweep, client: Client) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=window&point.flow_rate=0.02&point.mud_density=1500")
+    drawn(page, "class over")
+    chosen = page.get_by_role("region", name="Operating point")
+    cross = page.get_by_role("button", name=re.compile("^Operating point"))
+    table = named.table().to_pandas().set_index("ordinal")
+    speed = "operation.rotation_speed_rpm"
+    ranges = {"flow_rate": (0.01, 0.04), "mud_density": (1200, 1800), speed: (90, 120)}
+
+    def nearest(**place: float) -> int:
+        parts = [((table[name] - place[name]) / (to - start)) ** 2 for name, (start, to) in ranges.items()]
+        return int(sum(parts[1:], parts[0]).idxmin())
+
+    # Halfway between both densities the arrow key decides.
+    cross.press("ArrowUp")
+    place = {"flow_rate": 0.02, "mud_density": 1512.0, speed: 104.0}
+    chosen.get_by_role("slider", name="rotation speed").fill("46.6667")
+    expect(chosen.get_by_role("link", name=re.compile(r"^point \d+$"))).to_have_text(f"point {nearest(**place)}")
+    word = str(table["class"][nearest(**place)]).replace("_", " ")
+    expect(chosen.locator(".class-word").first).to_have_text(word)
+    for _ in range(12):
+        cross.press("ArrowRight")
+    place["flow_rate"] += 12 * 0.02 * 0.03
+    expect(chosen.get_by_role("link", name=re.compile(r"^point \d+$"))).to_have_text(f"point {nearest(**place)}")
+    # The map shows the slice that is nearest to the held value.
+    held = page.get_by_label("rotation speed", exact=True).first
+    expect(held).to_have_value("90")
+    chosen.get_by_role("slider", name="rotation speed").fill("90")
+    expect(held).to_have_value("120")
+    expect(chosen.get_by_role("img", name="Orbit")).to_be_visible()
+    box = cross.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] - 2000, box["y"] - 100, steps=4)
+    page.mouse.up()
+    until(page, lambda: "point.flow_rate=0.01&" in page.url + "&")
+
+
+def test_edges_between_classes_are_refined_a_round_at_a_time(opened: Opens, client: Client) -> None:
+    """The mean of the smallest and the largest value of a column is a limit that a sweep always crosses."""
+    axes = {"flow_rate": [0.01, 0.03], "mud_density": [1200.0, 1800.0]}
+    sweep = client.submit("paper-200m", set=SHORT, axes=axes, name="edges").wait(timeout=240.0)
+    column = "largest_equivalent_stress"
+    values = [float(value) for value in sweep.table()[column]]
+    limit = 0.5 * (min(values) + max(values))
+    page = opened(f"#/sweeps/{sweep.id}?view=window&limits={column}:{limit!r}")
+    drawn(page, "class over")
+    page.get_by_text("Refine the edges between classes").click()
+    page.get_by_label("Points at most").fill("2")
+    page.get_by_role("button", name="Add points").click()
+    expect(
+        page.get_by_text(re.compile(r"longer than the resolution, the longest 100(\.0)? % of an axis"))
+    ).to_be_visible()
+    added = sweep.refresh().wait(timeout=240.0)
+    assert added.counts.total == 6
+    places = {(point.parameters["flow_rate"], point.parameters["mud_density"]) for point in added.points()}
+    middles = {(0.02, 1200.0), (0.02, 1800.0), (0.01, 1500.0), (0.03, 1500.0), (0.02, 1500.0)}
+    assert len(places & middles) == 2

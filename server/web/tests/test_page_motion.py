@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from browsing import Opens, clock, drawn, pixels, scene, trace, until
+from browsing import Opens, clock, drawn, pixels, requested, scene, trace, until
 from drillsweep import Sweep
 
 
@@ -134,17 +134,43 @@ def test_a_point_without_snapshots_says_what_to_ask_for(opened: Opens, sweep: Sw
     assert scenario["recording"]["snapshots"] == {"rate_hz": 25}
 
 
+def test_motion_is_enlarged_apart_from_sag_and_a_stripe_shows_the_rotation(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string&time=0.25")
+    picture = scene(page)
+    enlarged = page.get_by_label("Motion about the mean")
+    expect(enlarged.locator("option:checked")).to_have_text(re.compile(r"as it suits, \d+ times more"))
+    suited = int(re.findall(r"\d+", enlarged.locator("option:checked").inner_text())[0])
+    assert suited > 1
+    usual = pixels(picture)
+    enlarged.select_option(str(suited))
+    assert pixels(picture) == usual
+    enlarged.select_option("1")
+    until(page, lambda: pixels(picture) != usual)
+    # The string at rest and the hole stay; a choice is kept in the link.
+    assert "motion=1" in page.url
+    plain = pixels(picture)
+    page.get_by_label("Stripe").uncheck()
+    until(page, lambda: pixels(picture) != plain)
+    assert "stripe=no" in page.url
+
+
 def test_snapshots_are_a_change_of_a_new_sweep(opened: Opens, troubles: list[str]) -> None:
     page = opened("#/new?preset=paper-200m")
     plan = page.locator("dt", has_text="Storage").locator("xpath=following-sibling::dd[1]")
     expect(plan).to_be_visible()
     without = plan.text_content()
-    page.get_by_role("button", name="Add a change").click()
-    page.get_by_role("combobox", name="Field").last.fill("recording.snapshots")
-    page.get_by_role("textbox", name="Value", exact=True).last.fill('{"rate_hz": 25}')
+    tick = page.get_by_role("checkbox", name=re.compile("Keep the string in motion"))
+    expect(page.locator("label", has=tick)).to_contain_text(re.compile(r"about \S+ MB a point"))
+    before = page.locator("label", has=tick).inner_text()
+    tick.check()
     until(page, lambda: plan.text_content() != without)
+    assert requested(page)["set"] == {"recording.snapshots": {"rate_hz": 25}}
     expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
-    page.get_by_role("textbox", name="Value", exact=True).last.fill('{"rate_hz": 30}')
+    # The size that was estimated is the planned one.
+    assert page.locator("label", has=tick).inner_text() == before
+    rate = page.get_by_label("Snapshots a second")
+    rate.fill("30")
+    rate.blur()
     expect(page.get_by_text("a whole part of recording.rate_hz")).to_be_visible()
     expect(page.get_by_role("button", name="Submit")).to_be_disabled()
     # The browser writes of every answer that refuses.

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from itertools import pairwise
 from pathlib import Path
 from urllib.parse import parse_qs
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, Route, expect
 
@@ -88,7 +90,7 @@ def test_the_keyboards_focus_stays_where_controls_are_made_anew(opened: Opens, s
 
 PROFILE = ["measured_depth_top", "measured_depth_bottom"]
 ORBIT = ["time", "u", "v", "radius"]
-SPACE = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v"]
+SPACE = ["measured_depth", "north", "east", "true_vertical_depth", "u", "v", "low_side_angle", "clearance"]
 STATISTICS = ["node", "measured_depth", "orbit_radius_rms"]
 LINES_OF_A_POINT = {
     "profiles": {"profile": [*PROFILE, "friction_coefficient"], "contacts": ["measured_depth", "largest_normal_force"]},
@@ -128,7 +130,10 @@ def assert_lines_run(page: Page, expected: dict[str, list[str]], directory: Path
 @pytest.mark.parametrize("view", LINES_OF_A_POINT)
 def test_the_lines_of_a_view_read_what_it_shows(opened: Opens, recorded: Sweep, view: str, tmp_path: Path) -> None:
     page = opened(f"#/sweeps/{recorded.id}/points/1?view={view}")
-    drawn(page, "Rotation speed and torque at bit and top" if view == "string" else ".")
+    if view.startswith("well"):
+        scene(page, "The string at rest")
+    else:
+        drawn(page, "Rotation speed and torque at bit and top" if view == "string" else ".")
     expected = {name if name != "point" else "": columns for name, columns in LINES_OF_A_POINT[view].items()}
     if len(expected) == 1 and "motion" not in view:
         (name,) = expected
@@ -329,69 +334,55 @@ def test_rotation_of_a_node_says_of_which(opened: Opens, sweep: Sweep) -> None:
     assert all(value / step == pytest.approx(round(value / step), abs=1e-6) for value in values for step in steps)
 
 
-TURN = """async (place) => {
-    const canvas = place.querySelector("canvas");
-    const { left, top, width, height } = canvas.getBoundingClientRect();
-    const send = (kind, part, buttons) => canvas.dispatchEvent(new MouseEvent(kind, {
-        bubbles: true, clientX: left + part * width, clientY: top + part * height, buttons,
-    }));
-    send("mousedown", 0.5, 1);
-    for (const part of [0.52, 0.56, 0.6]) {
-        await new Promise(requestAnimationFrame);
-        send("mousemove", part, 1);
-    }
-    send("mouseup", 0.6, 0);
-}"""
-"""Turns a picture in space and lets go while it turns."""
-
-
 @pytest.mark.parametrize("view", ["point", "compare"])
 def test_a_well_that_is_turned_stays_so(opened: Opens, sweep: Sweep, view: str) -> None:
     shown = f"#/sweeps/{sweep.id}/points/1?view=well"
     page = opened(shown if view == "point" else f"#/compare?points={sweep.id}:1,{sweep.id}:2&view=well")
-    picture = drawn(page, "^(The well and the string in it|Well)$")
-    picture.scroll_into_view_if_needed()
-    camera = "place => place._fullLayout.scene._scene.getCamera().eye"
-    before = picture.evaluate(camera)
-    picture.evaluate(TURN)
-    until(page, lambda: "zoom.well=camera" in page.url)
-    kept = dict(
-        zip("xyz", map(float, page.url.split("zoom.well=camera")[1].replace("%3A", ":").split(":")[1:4]), strict=True)
-    )
-    assert kept != pytest.approx(before, abs=0.3)
-    # As it is when it has come to rest, a little after the mouse is let go.
-    assert picture.evaluate(camera) == pytest.approx(kept, abs=1e-5)
+    picture = scene(page, "The string at rest")
+    section = pixels(picture)
+    picture.focus()
+    for key in ("ArrowRight", "ArrowUp", "+"):
+        page.keyboard.press(key)
+    until(page, lambda: "turn=" in page.url)
+    turned = pixels(picture)
+    assert turned != section
     page.get_by_label("Colour", exact=True).select_option(label="friction coefficient C_f")
-    bar = "place => place.data.flatMap(({ line }) => line.colorbar?.title.text ?? [])"
-    until(page, lambda: "friction coefficient" in str(picture.evaluate(bar)))
-    # It is put back once the picture is drawn.
-    until(page, lambda: picture.evaluate(camera) == pytest.approx(kept, abs=1e-5))
+    expect(page.locator(".scale")).to_contain_text("friction coefficient")
+    picture = scene(page, "The string at rest")
+    until(page, lambda: pixels(picture) not in (section, turned))
     other = opened(f"#{page.url.partition('#')[2]}")
-    picture = drawn(other, "^(The well and the string in it|Well)$")
-    until(other, lambda: picture.evaluate(camera) == pytest.approx(kept, abs=1e-5))
+    copy = scene(other, "The string at rest")
+    until(other, lambda: pixels(copy) == pixels(picture))
+    other.get_by_role("button", name="Section").click()
+    until(other, lambda: "turn=" not in other.url)
 
 
-def test_a_well_that_is_tilted_stays_so(opened: Opens, sweep: Sweep) -> None:
-    page = opened(f"#/sweeps/{sweep.id}/points/1?view=well")
-    picture = drawn(page, "The well and the string in it")
+def test_a_well_is_read_and_saved(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=well&colour=effective_tension")
+    picture = scene(page, "The string at rest")
     picture.scroll_into_view_if_needed()
-    picture.hover()
-    picture.locator(".modebar-btn[data-title='Orbital rotation']").click()
-    upward = "place => place._fullLayout.scene._scene.getCamera().up"
-    picture.evaluate(TURN)
-    until(page, lambda: "zoom.well=camera" in page.url)
-    kept = page.url.split("zoom.well=camera")[1].replace("%3A", ":").split(":")[7:10]
-    up = dict(zip("xyz", map(float, kept), strict=True))
-    assert abs(up["x"]) + abs(up["y"]) > 0.01
-    assert picture.evaluate(upward) == pytest.approx(up, abs=1e-5)
-    other = opened(f"#{page.url.partition('#')[2]}")
-    copy = drawn(other, "The well and the string in it")
-    until(other, lambda: copy.evaluate(upward) == pytest.approx(up, abs=1e-5))
-    copy.hover()
-    copy.locator(".modebar-btn[data-title='Reset camera to last save']").click()
-    until(other, lambda: "zoom.well" not in other.url)
-    eye, up = copy.evaluate("place => place._fullLayout.scene._scene.getCamera().eye"), copy.evaluate(upward)
-    assert up["x"] * eye["y"] == pytest.approx(up["y"] * eye["x"], abs=1e-6)
+    box = picture.bounding_box()
+    assert box is not None
+    reading = page.get_by_role("status", name="The place that the mouse is at")
+    for step in range(200):
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + (step + 0.5) / 200 * box["height"])
+        taken(page)
+        if reading.text_content():
+            break
+    expect(reading).to_have_text(re.compile(r"^[\d.]+ m measured depth · effective tension \S+ kN$"))
+    numbers = re.findall(rf"[{MINUS}-]?[\d.]+", str(reading.text_content()))
+    depth, tension = (float(text.replace(MINUS, "-")) for text in numbers)
+    statics = sweep.point(1).statics()
+    node = int(np.argmin(np.abs(np.array(statics["measured_depth"]) - depth)))
+    elements = np.array(sweep.point(1).profile()["effective_tension"])
+    assert 1000 * tension == pytest.approx(np.mean(elements[max(node - 1, 0) : node + 1]), rel=2e-3)
+    for format in ("PNG", "SVG"):
+        with page.expect_download() as download:
+            page.get_by_role("button", name=f"Save the well as {format}").click()
+        assert download.value.suggested_filename == f"well.{format.lower()}"
+    drawing = download.value.path().read_text()
+    assert drawing.startswith("<svg")
+    assert "effective tension [kN]" in drawing
 
 
 def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Opens, client: Client) -> None:
@@ -413,6 +404,44 @@ def test_the_highest_line_of_a_window_of_the_summary_carries_its_bias(opened: Op
         expect(lines.filter(has_text="(bias ")).to_have_count(0)
 
 
+def test_the_wall_is_named_where_it_is_seen_and_the_axes_by_the_low_side(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
+    drawn(page, "Orbit of node 49")
+    panel = page.locator(".panel", has=page.get_by_role("heading", name="Orbit, looking downhole"))
+    expect(panel).to_contain_text("The wall is outside the picture, at least")
+    page.get_by_label("Orbit shows").select_option("hole")
+    expect(panel).to_contain_text("On the grey circle the node touches the wall.")
+    angle = math.degrees(float(sweep.point(1).statics().to_pandas().set_index("node").low_side_angle[49]))
+    expected = f"u points {float(f'{abs(angle):.3g}'):g}° " if abs(angle) >= 0.5 else "u points to the low side"
+    expect(page.get_by_text(expected)).to_be_visible()
+
+
+def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy")
+    picture = drawn(page, "Energy by account")
+    names = picture.evaluate("place => place._fullLayout.yaxis.categoryarray")
+    assert picture.evaluate("place => place._fullLayout.xaxis.type") == "log"
+    table = sweep.point(1).energy().to_pandas()
+    sizes = (table.iloc[-1] - table.iloc[0]).abs().drop(["time", "residual", "contact_work"], errors="ignore")
+    sizes = sizes.sort_values(ascending=False)
+    words = {"work_rotation": "work of the rotation", "dissipated_friction": "dissipated by friction"}
+    assert [words[name] for name in sizes.index if name in words] == [
+        name.partition(",")[0] for name in reversed(names) if name.partition(",")[0] in words.values()
+    ]
+    assert len(names) == len(sizes)
+    ends = [
+        (name, end)
+        for number in range(3)
+        for name, end in picture.evaluate(
+            "(place, number) => place.data[number].y.map((name, at) => [name, place.data[number].x[at]])"
+            ".filter((_, at) => at % 3 === 1)",
+            number,
+        )
+    ]
+    rotation = next(end for name, end in ends if name.startswith("work of the rotation"))
+    assert rotation == pytest.approx(sizes["work_rotation"])
+
+
 def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     last = "place => Math.max(...place.data[0].x)"
@@ -427,7 +456,7 @@ def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -
     assert "range_hz=100" in lines["Python"]
 
 
-@pytest.mark.parametrize("choices", ["", "&node=49&from=0.2&to=0.4&range=50&window=rectangular"])
+@pytest.mark.parametrize("choices", ["&node=10", "&node=49&from=0.2&to=0.4&range=50&window=rectangular"])
 def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens, sweep: Sweep, choices: str) -> None:
     page = opened("#/nowhere")
     asked: list[str] = []
@@ -444,11 +473,14 @@ def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens
 
     until(page, lambda: [url.partition("?")[0] for url in tables()] == names)
     ahead = tables()
-    assert [("range_hz=50" in url, "from=0.2" in url) for url in ahead if "spectrum" in url] == [(bool(choices),) * 2]
+    is_other = "range" in choices
+    assert [("range_hz=50" in url, "from=0.2" in url) for url in ahead if "spectrum" in url] == [(is_other,) * 2]
     for route in held:
         route.continue_()
     drawn(page, "Orbit of node")
     drawn(page, "Full spectrum of node")
+    # The overview shows the same tables.
+    expect(page.get_by_role("img", name="Full spectrum")).to_be_visible()
     assert tables() == ahead
 
 
@@ -470,6 +502,8 @@ def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sw
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=motion"))
     rows = page.get_by_role("region", name="Lines, scrollable").get_by_role("row")
     expect(rows).to_have_count(4)
+    marks = trace(drawn(page, "Full spectrum of node"), 1)
+    assert [marks["x"], marks["y"]] == [[2.16, 4.32, 5.0], pytest.approx([2.0, 1.0, 0.5])]
     causes = [rows.nth(number).get_by_role("cell").nth(3) for number in (1, 2, 3)]
     expect(causes[1]).to_have_text("2 \N{MULTIPLICATION SIGN} 2.16 Hz")
     # Once the modes are found.

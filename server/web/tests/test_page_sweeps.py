@@ -19,7 +19,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from browsing import GONE, Opens, drag, drawn, requested, taken, until
+from browsing import GONE, Opens, drag, drawn, parallel, requested, scene, taken, until
 from drillsweep import Axis, Client, Outputs, Range, Sweep
 from service import REPOSITORY, SHORT, Service, binary
 
@@ -75,6 +75,61 @@ def test_what_is_typed_just_before_a_view_is_left_stays_out_of_the_next_link(
     expect(page.get_by_role("heading", level=1)).to_have_text(str(named.name))
     assert "typed" not in page.url
     assert "request" not in page.url
+
+
+def test_field_units_hold_in_the_form_and_the_request_is_in_si_units(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    page.get_by_role("button", name="Units: SI. Switch").click()
+    rows = page.get_by_role("region", name="Parameters")
+    flows, densities = (rows.get_by_role("textbox", name="Values").nth(row) for row in (0, 1))
+    expect(densities).to_have_value("10.0145:17.5253:4")
+    # Values that nobody has touched stay as they were.
+    assert requested(page)["axes"]["mud_density"] == {"from": 1200, "to": 2100, "count": 4}
+    gallon_a_minute = 231 * 0.0254**3 / 60
+    flows.fill("300, 600 gpm, 0.02 m³/s")
+    expected = {"values": pytest.approx([300 * gallon_a_minute, 600 * gallon_a_minute, 0.02], rel=1e-14)}
+    until(page, lambda: requested(page)["axes"]["flow_rate"] == expected)
+    scenario = page.get_by_role("region", name="Scenario", exact=True)
+    scenario.get_by_text("All fields, with units").click()
+    scenario.locator("summary", has_text=re.compile("^operation$")).click()
+    weight = scenario.get_by_label("weight on bit [klbf]")
+    weight.fill("20")
+    until(page, lambda: "operation.weight_on_bit" in requested(page).get("set", {}))
+    assert requested(page)["set"]["operation.weight_on_bit"] == pytest.approx(20e3 * 0.45359237 * 9.80665, rel=1e-14)
+    page.get_by_role("button", name="Units: field. Switch").click()
+    expect(scenario.get_by_label("weight on bit [N]")).to_have_value("88964.43230521")
+    expect(page.get_by_role("button", name="Submit 12 points")).to_be_enabled()
+
+
+def test_recorded_nodes_and_windows_are_lists(opened: Opens) -> None:
+    page = opened("#/new?preset=paper-200m")
+    page.get_by_text("Recorded nodes, windows of spectra").click()
+    expect(page.get_by_label("Node 2", exact=True)).to_have_value("49")
+    page.get_by_role("button", name="Remove node 1").click()
+    page.get_by_role("button", name="Add a node").click()
+    box = page.get_by_label("Node 3", exact=True)
+    box.fill("120.5")
+    box.blur()
+    until(
+        page, lambda: requested(page).get("set") == {"recording.nodes": [{"node": 49}, {"node": 282}, {"depth": 120.5}]}
+    )
+    for _ in range(2):
+        page.get_by_role("button", name="Remove window 1").click()
+    until(page, lambda: requested(page)["set"].get("recording.spectrum_windows") == [])
+    # Both are shown as lists alone.
+    expect(page.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
+    expect(page.get_by_role("button", name="Submit 12 points")).to_be_enabled()
+    for _ in range(2):
+        page.get_by_role("button", name="Take back").first.click()
+    until(page, lambda: "set" not in requested(page))
+
+
+def test_presets_stand_in_groups_and_the_button_stays_in_sight(opened: Opens) -> None:
+    page = opened("#/new", viewport={"width": 1280, "height": 700})
+    select = page.get_by_role("combobox", name="Scenario", exact=True)
+    expect(select.locator("optgroup").last).to_have_attribute("label", "Hard cases")
+    select.select_option("hard/light-mud")
+    expect(page.get_by_role("button", name="Submit")).to_be_in_viewport()
 
 
 def test_what_is_submitted_is_what_was_planned(opened: Opens) -> None:
@@ -512,23 +567,30 @@ def test_a_sweep_to_compare_with_is_searched_among_all(opened: Opens, named: Swe
 
 def test_the_link_holds_what_is_brushed_on_parallel_coordinates(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&brush=mud_density:1100:1500,flow_rate:0.005:0.02")
-    picture = drawn(page, "Parallel coordinates")
-    script = "place => Object.fromEntries(place.data[0].dimensions.map(one => [one.name, one.constraintrange]))"
-    until(page, lambda: bool(picture.evaluate(script)["mud_density"]))
-    ranges = picture.evaluate(script)
-    assert (ranges["mud_density"], ranges["flow_rate"]) == ([[1100, 1500]], [[0.005, 0.02]])
+    picture = parallel(page)
+    expect(picture.locator(".range")).to_have_count(2)
+    kept = page.get_by_role("status", name="Points that are kept")
+    expect(kept).to_have_text("2 of 8 points are kept.")
     axis = picture.locator(".axis-brush").nth(1)
     drag(page, axis, (0.5, 0.05), (0.5, 0.3))
     until(page, lambda: page.url.count("mud_density") == 2)
     other = opened(f"#{page.url.partition('#')[2]}")
-    copy = drawn(other, "Parallel coordinates")
-    until(other, lambda: len(copy.evaluate(script)["mud_density"] or []) == 2)
+    expect(parallel(other).locator(".range")).to_have_count(3)
+    # A filter is moved as a whole, changed at its end, and removed by a click.
+    other_kept = other.get_by_role("status", name="Points that are kept")
+    axis = parallel(other).locator(".axis-brush").nth(1)
+    drag(other, axis, (0.5, 0.2), (0.5, 0.1))
+    expect(other_kept).to_have_text("4 of 8 points are kept.")
+    box = axis.bounding_box()
+    assert box is not None
+    other.mouse.click(box["x"] + box["width"] / 2, box["y"] + 0.1 * box["height"])
+    expect(parallel(other).locator(".range")).to_have_count(2)
+    until(other, lambda: other.url.count("mud_density") == 1)
 
 
 def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel")
-    picture = drawn(page, "Parallel coordinates")
-    ranges = "place => Object.fromEntries(place.data[0].dimensions.map(one => [one.name, one.constraintrange?.flat()]))"
+    picture = parallel(page)
     kept = page.get_by_role("status", name="Points that are kept")
     summary = page.locator("summary", has_text="Keep points by numbers")
     summary.focus()
@@ -536,7 +598,7 @@ def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens,
     page.get_by_label("mud density [kg/m³], from").focus()
     page.keyboard.type("1500")
     page.keyboard.press("Tab")
-    until(page, lambda: picture.evaluate(ranges)["mud_density"] == [1500, 1800])
+    expect(picture.locator(".range")).to_have_count(1)
     expect(kept).to_have_text("4 of 8 points are kept.")
     assert "mud_density%3A1500%3A" in page.url
     expect(page.get_by_label("mud density [kg/m³], to")).to_be_focused()
@@ -544,11 +606,10 @@ def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens,
     page.keyboard.type("0.02")
     page.keyboard.press("Enter")
     expect(kept).to_have_text("2 of 8 points are kept.")
-    until(page, lambda: picture.evaluate(ranges)["flow_rate"] == [0.01, 0.02])
+    expect(picture.locator(".range")).to_have_count(2)
     # In the units of who opens the link.
     other = opened(f"#{page.url.partition('#')[2]}")
-    copy = drawn(other, "Parallel coordinates")
-    until(other, lambda: copy.evaluate(ranges)["mud_density"] == [1500, 1800])
+    expect(parallel(other).locator(".range")).to_have_count(2)
     expect(other.get_by_role("status", name="Points that are kept")).to_have_text("2 of 8 points are kept.")
     other.get_by_role("button", name="Units: SI. Switch").click()
     expect(other.locator("legend", has_text="mud density [ppg]")).to_have_count(1)
@@ -566,32 +627,30 @@ def test_axes_of_parallel_coordinates_are_brushed_by_the_keyboard(opened: Opens,
         page.get_by_label(name, exact=True).fill("")
         page.get_by_label(name, exact=True).press("Enter")
     expect(second).to_have_count(0)
-    until(page, lambda: picture.evaluate(ranges)["flow_rate"] is None)
+    expect(picture.locator(".range")).to_have_count(1)
 
 
 def test_a_line_of_parallel_coordinates_tells_its_point(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
-    picture = drawn(page, "Parallel coordinates")
+    picture = parallel(page)
+    said = page.get_by_role("status", name="The point that is read")
+    # The keyboard reads the points that are kept, one after the other.
+    page.get_by_label("Point cursor").focus()
+    for key, expected in (("End", 8), ("ArrowLeft", 7), ("Home", 1)):
+        page.keyboard.press(key)
+        expect(said.get_by_role("link")).to_have_text(f"Point {expected}")
+    expect(picture.locator("polyline.mark")).to_have_count(1)
+    picture.scroll_into_view_if_needed()
     # Between the first two axes, on the line of one point, as far from its neighbours as these are apart.
     axes = picture.locator(".axis-brush")
     boxes = [axes.nth(number).bounding_box() for number in range(2)]
-    assert boxes[0] is not None
-    assert boxes[1] is not None
     table = named.table().to_pandas()
-    (point,) = table.index[
-        (table["flow_rate"] == 0.04) & (table["mud_density"] == 1200) & (table["operation.rotation_speed_rpm"] == 120)
-    ]
-    read = """place => place.data[0].dimensions.slice(0, 2).map(({ name, values, range }) => ({
-        name, values: [...values], ends: range ?? [Math.min(...values), Math.max(...values)],
-    }))"""
     heights = []
-    for axis, box in zip(picture.evaluate(read), boxes, strict=True):
+    for name, value, box in zip(("flow_rate", "mud_density"), (0.04, 1200), boxes, strict=True):
         assert box is not None
-        least, largest = axis["ends"]
-        part = (axis["values"][point] - least) / (largest - least)
+        part = (value - table[name].min()) / (table[name].max() - table[name].min())
         heights.append((box["x"] + box["width"] / 2, box["y"] + (1 - part) * box["height"]))
     (left, top), (right, bottom) = heights
-    said = page.get_by_role("status", name="The point that the mouse is at")
     page.mouse.move(left + 0.3 * (right - left), top + 0.3 * (bottom - top) + 4, steps=5)
     expect(said).to_contain_text("flow rate 0.04 m³/s · mud density 1200 kg/m³")
     ordinal = int(str(said.get_by_role("link").text_content()).removeprefix("Point "))
@@ -843,7 +902,10 @@ def test_biases_stand_in_every_picture_of_a_sweep(opened: Opens, client: Client,
     colour = "orbit_radius_rms_49"
     for view in ("map", "parallel", "scatter", "difference"):
         page = opened(f"#/sweeps/{verified.id}?view={view}&colour={colour}&with={other.id}")
-        drawn(page, ".")
+        if view == "parallel":
+            parallel(page)
+        else:
+            drawn(page, ".")
         expect(page.locator("figcaption", has_text="Bias against reference runs at 4 points: mean")).to_be_visible()
         if view != "parallel":
             hover = page.locator(".js-plotly-plot").evaluate("place => place.data[0].text.flat()")
@@ -1075,11 +1137,9 @@ def test_intervals_of_indices_are_shown_to_their_ends(opened: Opens, client: Cli
 
 def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
-    picture = drawn(page, "Parallel coordinates")
-    order = "place => place.data[0].dimensions.map(({ name }) => name)"
-    before = picture.evaluate(order)
+    picture = parallel(page)
+    before = ["flow_rate", "mud_density", "operation.rotation_speed_rpm", "contact_count", "torque_top"]
     titles = picture.locator(".axis-title")
-    titles.first.scroll_into_view_if_needed()
     first, second = (titles.nth(number).bounding_box() for number in range(2))
     assert first is not None
     assert second is not None
@@ -1090,13 +1150,13 @@ def test_the_link_holds_the_order_of_axes_of_parallel_coordinates(opened: Opens,
     moved = [before[1], before[0], *before[2:]]
     until(page, lambda: f"order={'%2C'.join(moved)}" in page.url)
     copy = opened(f"#{page.url.partition('#')[2]}")
-    assert drawn(copy, "Parallel coordinates").evaluate(order) == moved
+    expect(parallel(copy).locator(".axis-title").first).to_have_text("mud density [kg/m³]")
 
 
 def test_names_of_parallel_axes_do_not_overlap_on_a_phone(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel", viewport={"width": 390, "height": 844})
-    picture = drawn(page, "Parallel coordinates")
-    read = "place => [...place.querySelectorAll('.axis-title, .axis-extent-text')].map((text) => {"
+    picture = parallel(page)
+    read = "place => [...place.querySelectorAll('.axis-title, .axis-extent')].map((text) => {"
     read += " const { left, right, top, bottom } = text.getBoundingClientRect(); return [left, right, top, bottom]; })"
     texts = [text for text in picture.evaluate(read) if text[1] > text[0]]
     assert len(texts) >= 5 * 3
@@ -1109,16 +1169,16 @@ def test_names_of_parallel_axes_do_not_overlap_on_a_phone(opened: Opens, named: 
 
 def test_axes_of_parallel_coordinates_are_moved_by_the_keyboard(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=parallel&colour=torque_top&beside=contact_count")
-    picture = drawn(page, "Parallel coordinates")
-    order = "place => place.data[0].dimensions.map(({ name }) => name)"
-    usual = picture.evaluate(order)
-    assert usual[0] == "flow_rate"
+    picture = parallel(page)
+    usual = ["flow_rate", "mud_density", "operation.rotation_speed_rpm", "contact_count", "torque_top"]
+    titles = dict(zip(usual, picture.locator(".axis-title").all_text_contents(), strict=True))
+    assert titles["flow_rate"] == "flow rate [m³/s]"
     page.locator("summary", has_text="move axes").click()
     right, left = (page.get_by_role("button", name=f"Move flow rate [m³/s] {where}") for where in ("right", "left"))
     orders = [[*usual[1 : place + 1], "flow_rate", *usual[place + 1 :]] for place in range(len(usual))]
 
     def shows(names: list[str]) -> None:
-        until(page, lambda: picture.evaluate(order) == names)
+        expect(picture.locator(".axis-title")).to_have_text([titles[name] for name in names])
 
     right.focus()
     for names in orders[1:]:
@@ -1148,18 +1208,56 @@ LEFT = """({ url }) => {
 """Leaves a view of profiles for another one before their data have come."""
 
 
-def test_no_build_of_the_drawing_library_is_compiled_for_a_view_that_was_left(opened: Opens, named: Sweep) -> None:
+def test_the_drawing_library_is_not_compiled_for_a_view_that_was_left(opened: Opens, named: Sweep) -> None:
     page = opened("#/nowhere")
     warnings: list[str] = []
     page.on("console", lambda message: warnings.append(message.text) if "preload" in message.text else None)
     point = f"#/sweeps/{named.id}/points/1"
     page.add_init_script(f"({LEFT})({json.dumps({'url': f'{point}?view=well'})})")
     page.goto(f"{page.url.partition('#')[0]}?{point}")
-    drawn(page, "The well and the string in it")
+    scene(page, "The string at rest")
     # Chromium complains of what is preloaded and not used a few seconds after the page has loaded.
     page.wait_for_timeout(6000)
-    assert page.locator("head script[src*=plotly-cartesian]").count() == 0
+    assert page.locator("head script[src*=plotly]").count() == 0
     assert warnings == []
+
+
+def test_dots_of_many_points_are_read_and_opened(idle: str, opened: Opens) -> None:
+    axes: dict[str, Axis] = {"flow_rate": Range(0.01, 0.04, 80), "mud_density": Range(1200, 1800, 40)}
+    with Client(idle) as client:
+        many = client.submit("paper-200m", set=SHORT, axes=axes)
+    page = opened(f"#/sweeps/{many.id}?view=scatter&x=flow_rate&y=mud_density&colour=state", idle)
+    picture = drawn(page, "mud density against flow rate")
+    picture.scroll_into_view_if_needed()
+    dots = picture.locator(".layer-above image")
+    expect(dots).to_have_count(1)
+    ends = "place => ['xaxis', 'yaxis'].map((name) => place._fullLayout[name].range)"
+    (left, right), (low, high) = picture.evaluate(ends)
+    assert left < 0.01 < 0.04 < right
+    assert low < 1200 < 1800 < high
+    box = picture.locator(".nsewdrag").bounding_box()
+    assert box is not None
+    # The point of the tenth flow rate and the fifth density.
+    flow, density = 0.01 + 9 * 0.03 / 79, 1200 + 4 * 600 / 39
+    place = (
+        box["x"] + (flow - left) / (right - left) * box["width"],
+        box["y"] + (high - density) / (high - low) * box["height"],
+    )
+    page.mouse.move(*place)
+    label = picture.locator(".dot-label")
+    expect(label).to_contain_text(f"mud density {density:.0f}")
+    ordinal = int(str(label.locator("div").first.text_content()).removeprefix("point "))
+    # Where the axes are zoomed, the dots are painted anew.
+    source = "image => image.href.baseVal"
+    before = dots.evaluate(source)
+    drag(page, picture.locator(".nsewdrag"), (0.1, 0.1), (0.6, 0.6))
+    until(page, lambda: dots.evaluate(source) != before)
+    picture.hover()
+    picture.locator(".modebar-btn[data-title='Reset axes']").click()
+    until(page, lambda: picture.evaluate(ends) == [[left, right], [low, high]])
+    until(page, lambda: dots.evaluate(source) == before)
+    page.mouse.click(*place)
+    until(page, lambda: page.url.partition("?")[0].endswith(f"/points/{ordinal}"))
 
 
 def test_a_finer_grid_is_dragged_over_points_that_were_drawn(idle: str, opened: Opens) -> None:

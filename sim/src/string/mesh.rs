@@ -316,7 +316,8 @@ mod tests {
     #[test]
     fn materials_are_those_of_the_section_or_of_the_string() {
         let steel = paper().string.material;
-        let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33 };
+        let aluminium =
+            Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33, grade: None };
         let of = |scenario: &Scenario, is: fn(&MeshElement) -> bool| -> Vec<Material> {
             let mesh = StringMesh::new(scenario).unwrap();
             let mut found: Vec<Material> =

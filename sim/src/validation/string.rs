@@ -313,7 +313,7 @@ mod tests {
             warnings(|s| (s.string.material.youngs_modulus, s.string.material.density) = (210.0, 7.85));
         let paths: Vec<&str> = found.iter().map(|warning| warning.path.as_str()).collect();
         assert_eq!(paths, ["string.material.youngs_modulus", "string.material.density"]);
-        let light = Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33 };
+        let light = Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33, grade: None };
         assert_eq!(warnings(|s| s.string.material = light), []);
     }
 

@@ -6,7 +6,8 @@ use drillsweep_scenario::Material;
 use drillsweep_sim::string::beam::{BeamElement, BeamSection, ElementMatrix};
 use nalgebra::{Complex, DMatrix};
 
-pub const STEEL: Material = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };
+pub const STEEL: Material =
+    Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3, grade: None };
 
 /// A straight beam of equal elements.
 pub struct StraightBeam {

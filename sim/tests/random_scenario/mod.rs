@@ -74,9 +74,9 @@ fn total_length(string: &DrillString) -> f64 {
 
 fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
     let material = match draw.below(6) {
-        0 => Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33 },
-        1 => Material { youngs_modulus: 1.1e11, density: 4430.0, poissons_ratio: 0.31 },
-        _ => Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 },
+        0 => Material { youngs_modulus: 7.1e10, density: 2790.0, poissons_ratio: 0.33, grade: None },
+        1 => Material { youngs_modulus: 1.1e11, density: 4430.0, poissons_ratio: 0.31, grade: None },
+        _ => Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3, grade: None },
     };
     let kinds = [SectionKind::Drillpipe, SectionKind::Collar, SectionKind::Stabilizer, SectionKind::Bit];
     let sections = (0..=draw.below(4))

@@ -226,6 +226,10 @@ class Client:
         """Gets JSON; entries of the query that are None are left out."""
         return dict(self._send("GET", path, query=query, read_timeout=read_timeout).json())
 
+    def get_text(self, path: str, query: Mapping[str, Any] | None = None) -> str:
+        """Gets a text; entries of the query that are None are left out."""
+        return self._send("GET", path, query=query).text
+
     def post_json(
         self,
         path: str,

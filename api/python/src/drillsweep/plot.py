@@ -6,7 +6,7 @@ Every function draws into `axes`, or into new ones, and returns them; a history 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from drillsweep.optional import require
@@ -15,6 +15,8 @@ from drillsweep.quantity import Unit, quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from drillsweep.sweep import Sweep
 
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#b5568c", "#b57b00", "#56b4e9")
 """Colours of lines, those of the web page: for colour-blind readers too (after Okabe and Ito)."""
@@ -180,18 +182,71 @@ def profile(
     return axes
 
 
+def window(
+    sweep: Sweep,
+    x: str | None = None,
+    y: str | None = None,
+    *,
+    limits: Mapping[str, float | None] | None = None,
+    axes: Axes | None = None,
+) -> Axes:
+    """The operating window: the class of each point over two parameters, in the colours of the web page.
+
+    The parameters are the first two that vary, unless given; over a single one the points are in a row. Points whose
+    class is uncertain are hollow.
+    """
+    np = require("numpy", "plot")
+    table = sweep.window(limits)
+    others = {"ordinal", "class", "class_uncertain", "sentence"}
+    varied = [name for name in table if name not in others and len(set(table.columns[name])) > 1]
+    across, up = ([x] if x else []) + [name for name in varied if name != y], ([y] if y else []) + varied
+    x = across[0] if across else "ordinal"
+    y = next((name for name in up if name != x), None)
+    xs = np.asarray(_shown(x).of(np.asarray(table.columns[x], dtype=float)))
+    ys = np.zeros_like(xs) if y is None else np.asarray(_shown(y).of(np.asarray(table.columns[y], dtype=float)))
+    known = quantity("class")
+    axes = axes or _new_axes()
+    for word, colour in (known.words if known else {}).items():
+        for is_uncertain in (False, True):
+            rows = [
+                row
+                for row, (name, reason) in enumerate(
+                    zip(table.columns["class"], table.columns["class_uncertain"], strict=True)
+                )
+                if name == word and bool(reason) == is_uncertain
+            ]
+            if rows:
+                label = f"{word.replace('_', ' ')}{', uncertain' if is_uncertain else ''}: {len(rows)}"
+                style: dict[str, Any] = {
+                    "facecolors": "none" if is_uncertain else colour,
+                    "edgecolors": colour,
+                    "linewidths": 1.5,
+                }
+                axes.scatter(xs[rows], ys[rows], s=60.0, label=label, **style)
+    axes.set_xlabel(_title(x))
+    if y is None:
+        axes.set_yticks([])
+    else:
+        axes.set_ylabel(_title(y))
+    axes.legend(fontsize="small")
+    return axes
+
+
 def _shown(column: str) -> Unit:
     known = quantity(column)
     return known.shown if known else Unit("", 1.0)
 
 
 def _name(column: str) -> str:
-    """Name of a column on the page, such as `u, node 49`."""
+    """Name of a column on the page, such as `u, node 49` or `lateral vibration at 57.7 m`."""
     known = quantity(column)
     if known is None:
         return column.replace("_", " ")
-    node = None if "." in column else re.fullmatch(rf"{known.name}_(\d+)", column)
-    return f"{known.label}, node {node[1]}" if node else known.label
+    place = None if "." in column else re.fullmatch(rf"{known.name}_(?:(\d+)|(\d+(?:_\d+)?)m)", column)
+    if place is None:
+        return known.label
+    node, depth = place.groups()
+    return f"{known.label}, node {node}" if node else f"{known.label} at {depth.replace('_', '.')} m"
 
 
 def _title(column: str) -> str:

@@ -302,6 +302,24 @@ class Point:
         """
         return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
 
+    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
+        """Printable report of the point, two to four pages: a self-contained HTML document.
+
+        Args:
+            limits: Changes of the default limits, by column in the column's unit; None removes one.
+            units: Units of values and pictures.
+        """
+        return self._client.get_text(f"{self.path}/report", {"limits": limits_text(limits), "units": units})
+
+    def save_report(
+        self,
+        file: str | Path,
+        limits: Mapping[str, float | None] | None = None,
+        units: Literal["si", "field"] = "si",
+    ) -> Path:
+        """Writes the report to a file that ends in .html."""
+        return self._client.save(f"{self.path}/report", file, {"limits": limits_text(limits), "units": units})
+
     def cost(self) -> dict[str, Any]:
         """Cost of accuracy, if the scenario has a `cost_study`."""
         return self._client.get_json(f"{self.path}/cost")

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -36,7 +37,7 @@ class Quantity:
     name: str
     """The name of the column without node and spectrum window, or the path of the scenario's field without indices."""
     label: str
-    """Its name in pictures."""
+    """Its name in pictures and texts, in the words of the field."""
     unit: str | None
     """The unit in which it is served (`1` for ratios); None for names and numbers of things."""
     shown: Unit
@@ -47,6 +48,8 @@ class Quantity:
     """Its symbol in the model's equations, if it has one."""
     meaning: str = ""
     """Its meaning, in a sentence."""
+    words: Mapping[str, str] = dataclass_field(default_factory=dict)
+    """Words of a column of texts that has few, with their colours: classes of points, the most severe first."""
 
 
 def quantity(name: str) -> Quantity | None:
@@ -87,4 +90,5 @@ def _read(name: str, entry: dict[str, Any]) -> Quantity:
         field=unit("field"),
         symbol=entry.get("symbol", ""),
         meaning=entry.get("meaning", ""),
+        words={word["word"]: word["colour"] for word in entry.get("words", [])},
     )

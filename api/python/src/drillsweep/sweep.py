@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 from drillsweep.design import Axis, Design, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
@@ -273,6 +273,24 @@ class Sweep:
         """
         return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
 
+    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
+        """Printable report of the sweep, two to four pages: a self-contained HTML document.
+
+        Args:
+            limits: Changes of the default limits, by column in the column's unit; None removes one.
+            units: Units of values and pictures.
+        """
+        return self._client.get_text(f"{self.path}/report", {"limits": limits_text(limits), "units": units})
+
+    def save_report(
+        self,
+        file: str | Path,
+        limits: Mapping[str, float | None] | None = None,
+        units: Literal["si", "field"] = "si",
+    ) -> Path:
+        """Writes the report to a file that ends in .html."""
+        return self._client.save(f"{self.path}/report", file, {"limits": limits_text(limits), "units": units})
+
     def verification(self) -> Table:
         """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).
 
@@ -391,6 +409,54 @@ class Sweep:
         self._data = self._client.post_json(f"{self.path}/points", body)
         warn(self.warnings, stacklevel=2)
         return self
+
+    def refine(
+        self,
+        by: str = "class",
+        *,
+        over: Sequence[str] = (),
+        resolution: float = 0.02,
+        difference: float | None = None,
+        limits: Mapping[str, float | None] | None = None,
+        budget: int = 100,
+        timeout: float | None = None,
+    ) -> Sweep:
+        """Adds points between neighbours whose classes or values differ, round by round, and waits for their results.
+
+        It ends when every edge is located to the resolution, or the budget is spent: see `refinement`.
+
+        Args:
+            by: `"class"`, or a column of numbers.
+            over: One or two of the sweep's parameters, over which points are neighbours; all of them unless given.
+            resolution: Longest edge that is not divided, as a part of the range of a parameter.
+            difference: For a column: smallest difference that is divided, as a part of the range of all values.
+            limits: For classes: changes of the default limits, by column in the column's unit; None removes one.
+            budget: Largest number of points to add.
+            timeout: Longest wait for the points of one round [s]; None is without end.
+
+        Raises:
+            InvalidRequest: An argument is not valid, or no point has a class or a value yet.
+            TimeoutError: When `timeout` is over.
+        """
+        first = self.wait(timeout).counts.total
+        while (left := budget - (before := self.counts.total) + first) > 0:
+            fields = {"by": by, "over": list(over), "resolution": resolution, "difference": difference}
+            fields |= {"limits": limits_text(limits), "budget": left}
+            refine = {field: value for field, value in fields.items() if value is not None}
+            self._data = self._client.post_json(f"{self.path}/points", to_json({"refine": refine}))
+            warn(self.warnings, stacklevel=2)
+            if self.counts.total == before:
+                break
+            state = self.refinement
+            self.wait(timeout)
+            self._data["refinement"] = state
+        return self
+
+    @property
+    def refinement(self) -> dict[str, Any] | None:
+        """State before the last round of `refine`: open edges, longest edge, proposed points; else None."""
+        state = self._data.get("refinement")
+        return None if state is None else dict(state)
 
     def _act(self, verb: str) -> Sweep:
         self._data = self._client.post_json(f"{self.path}/{verb}", {})

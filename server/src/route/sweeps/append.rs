@@ -1,9 +1,15 @@
 //! Addition of points to a sweep.
 
+use std::time::Duration;
+
 use axum::Extension;
 use axum::extract::State;
-use drillsweep_api::{AppendRequest, LIMITS, PHYSICS_VERSION, ProblemKind, Sweep, expand_added, sample};
-use drillsweep_store::{Addition, AppendOutcome, NewVerification};
+use drillsweep_api::{
+    AppendRequest, LIMITS, PHYSICS_VERSION, ProblemKind, RefinedSamples, RefinementState, Sweep,
+    expand_added, sample,
+};
+use drillsweep_store::{Addition, AppendOutcome, NewVerification, Store};
+use tokio::runtime::Handle;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{self, Path};
@@ -16,12 +22,16 @@ use crate::guard::quota;
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::expand::{expand_body, make_room};
 use crate::route::sweeps::load;
+use crate::route::verification::Verified;
 
 /// Add points to a sweep
 ///
 /// Points of the sweep's scenario with other values of its parameters, in any design, numbered after its last point. Points that the sweep
 /// has already are skipped, so that a finer grid can be requested as a whole, and repeating a request changes nothing. Added points are
 /// verified until the whole sweep has its share `verify`.
+///
+/// `refine` takes the place of a design: it divides edges between neighbouring points whose classes, or values of a column, differ, once in
+/// their middle. Repeat it when the new points have results, until `refinement.open_edges` is 0; `drillsweep refine` and `Sweep.refine` do so.
 #[utoipa::path(
     post,
     path = "/v1/sweeps/{id}/points",
@@ -42,7 +52,27 @@ pub(crate) async fn append(
         return Err(Error::internal("a sweep was read without its request"));
     };
     let verify = original.verify;
-    let expanded = expand_body(&app, &caller, &body, move |added: AppendRequest, work, memory| {
+    let samples = SweepPoints {
+        store: app.store.clone(),
+        runtime: Handle::current(),
+        id: id.clone(),
+        count: sweep.counts.total as usize,
+    };
+    let config = app.config.clone();
+    let expanded = expand_body(&app, &caller, &body, move |mut added: AppendRequest, work, memory| {
+        let mut refinement = None;
+        if let Some(refine) = added.refinement()? {
+            let refined = RefinedSamples::new(refine.clone(), &original, &config.operating_limits)?;
+            if let Err(needed) = samples.make_room(work, memory) {
+                return Ok(Err(needed));
+            }
+            let (points, state) = samples.refine(refined, work)?;
+            refinement = Some(state);
+            if points.points.is_empty() {
+                return Ok(Ok((refinement, None)));
+            }
+            added = points;
+        }
         let request_json = records::write(&added)?;
         let request = added.of(&original)?;
         if let Err(needed) = make_room(work, memory, &request) {
@@ -50,9 +80,12 @@ pub(crate) async fn append(
         }
         let expansion = expand_added(&request, &original, &|| work.check())?;
         let points = records::new_points(&expansion)?;
-        Ok(Ok((request_json, expansion, points)))
+        Ok(Ok((refinement, Some((request_json, expansion, points)))))
     });
-    let ((request_json, expansion, points), _memory) = expanded.await?;
+    let ((refinement, added), _memory) = expanded.await?;
+    let Some((request_json, expansion, points)) = added else {
+        return Ok(Json(Sweep { refinement, ..load(&app, &id).await? }));
+    };
     let (expansion, verification) = match verify {
         None => (expansion, NewVerification::default()),
         Some(verify) => {
@@ -103,5 +136,42 @@ pub(crate) async fn append(
             return Err(Error::new(ProblemKind::Conflict, detail));
         }
     }
-    Ok(Json(Sweep { warnings: expansion.warnings, ..load(&app, &id).await? }))
+    Ok(Json(Sweep { warnings: expansion.warnings, refinement, ..load(&app, &id).await? }))
+}
+
+/// Points of a sweep that a refinement reads.
+#[derive(Clone)]
+struct SweepPoints {
+    store: Store,
+    runtime: Handle,
+    id: String,
+    count: usize,
+}
+
+impl SweepPoints {
+    /// Memory of a point as a sample \[bytes\].
+    const MEMORY: usize = 200;
+
+    /// Processor time of reading a point's row.
+    const TIME: Duration = Duration::from_micros(300);
+
+    /// Takes memory and processor time for the samples.
+    ///
+    /// # Errors
+    /// The needed memory \[bytes\], if it is not free.
+    fn make_room(&self, work: &mut Work, of_reading: usize) -> std::result::Result<(), usize> {
+        let needed = of_reading + self.count * Self::MEMORY;
+        if !work.grow(needed) {
+            return Err(needed);
+        }
+        work.allow(Self::TIME * self.count as u32);
+        Ok(())
+    }
+
+    /// Request for the points of a refinement, with its state. Blocks.
+    fn refine(&self, mut samples: RefinedSamples, work: &Work) -> Result<(AppendRequest, RefinementState)> {
+        Verified::default().each_point(&self.store, &self.id, &self.runtime, |point| samples.push(&point))?;
+        work.check()?;
+        Ok(samples.finish()?)
+    }
 }

@@ -5,7 +5,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::ColumnList;
-use drillsweep_api::judgement::OperatingLimits;
+use drillsweep_api::judgement::LimitChanges;
 use drillsweep_api::view::points::PointsTable;
 use drillsweep_quantity::Name;
 use drillsweep_store::WorkState;
@@ -37,10 +37,10 @@ pub(crate) struct SweepTableQuery {
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
-    /// Changes of the default limits by which `class` is judged: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    /// Changes of the service's limits by which `class` is judged: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>)]
-    limits: OperatingLimits,
+    limits: LimitChanges,
     /// For a map: placement of the values of its parameters; absent means `even`.
     #[param(inline)]
     spacing: Option<MapSpacing>,
@@ -94,6 +94,7 @@ pub(crate) async fn table(
     headers: HeaderMap,
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
+    let limits = app.config.operating_limits.with(&limits);
     let spacing = spacing.unwrap_or_default();
     let slice = slice.unwrap_or_default();
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
@@ -183,7 +184,7 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     place
         .run(move || {
             let points = verified.points(
-                PointsTable::keeping([]).judged(OperatingLimits::default()),
+                PointsTable::keeping([]).judged(app.config.operating_limits.clone()),
                 &app.store,
                 &id,
                 &runtime,

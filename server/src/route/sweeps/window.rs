@@ -4,7 +4,7 @@ use ::drillsweep_chart as chart;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::judgement::OperatingLimits;
+use drillsweep_api::judgement::LimitChanges;
 use drillsweep_api::view::operating_window::OperatingWindow;
 use drillsweep_quantity::columns::CLASS;
 use serde::Deserialize;
@@ -27,10 +27,10 @@ pub(crate) struct WindowQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
-    /// Changes of the default limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
-    limits: OperatingLimits,
+    limits: LimitChanges,
     /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas.
     #[serde(default, deserialize_with = "value::assignments")]
     #[param(value_type = Option<String>)]
@@ -58,6 +58,7 @@ pub(crate) async fn window(
 ) -> Result<Response> {
     let format = Format::choose(format, &headers)?;
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
+    let limits = app.config.operating_limits.with(&limits);
     let slice = slice.unwrap_or_default();
     let key = Tag::of(format, &("window", &id, sweep.version, &sweep.name, &limits, &slice));
     let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;

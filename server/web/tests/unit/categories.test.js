@@ -3,10 +3,14 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { CLASSES } from "../../data/judgement.js";
+import { classes } from "../../data/judgement.js";
+import { loadQuantities } from "../../data/units.js";
 import { classColour } from "../../draw/colours.js";
 import { preferred } from "../../sweep/part.js";
 import { sortable, wordColour, wordsOf } from "../../sweep/categories.js";
+
+await loadQuantities();
+const CLASSES = classes().map(({ word }) => word);
 
 test("classes are in the order of their severity, other words in that of the alphabet", () => {
   const values = ["quiet", "stick_slip", null, "failed", "quiet", "backward_whirl"];

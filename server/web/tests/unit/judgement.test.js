@@ -3,7 +3,7 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { causeOf, causeWords, CLASSES, headlineNumbers, rankOf } from "../../data/judgement.js";
+import { causeOf, causeWords, classes, headlineNumbers, rankOf } from "../../data/judgement.js";
 import { choose } from "../../data/settings.js";
 import { loadQuantities } from "../../data/units.js";
 import { BLACK, classColour, inkOnClass, WHITE } from "../../draw/colours.js";
@@ -24,6 +24,7 @@ Object.assign(QUANTITIES, {
   largest_orbit_size: unit("m", ["mm", 1e-3], ["in", 0.0254]),
 });
 await loadQuantities();
+const CLASSES = classes().map(({ word }) => word);
 beforeEach(() => choose("units", "si"));
 
 const SUMMARY = {

@@ -4,7 +4,7 @@ import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
-import { columnsOf, panelsInPlane, panelsOverTime, rangeOf } from "../../compare/panels.js";
+import { columnsOf, largestFirst, panelsInPlane, panelsOverTime, rangeOf } from "../../compare/panels.js";
 
 const panel = (name, y, scale = "") => ({
   name,
@@ -82,4 +82,20 @@ test("a range holds all values, and none without any", () => {
   assert.equal(rangeOf([panel("a", [null])]), undefined);
   const [from, to] = rangeOf([panel("a", [3]), panel("b", [3])]);
   assert.ok(from < 3 && to > 3);
+});
+
+test("of lines in one picture the largest lies below, and the legend keeps their order", () => {
+  const traces = [
+    { name: "a", y: [0, 1] },
+    { name: "b", y: [-8, null, 2] },
+    { name: "c", y: [100, 103] },
+  ];
+  assert.deepEqual(
+    largestFirst(traces).map(({ name, legendrank }) => [name, legendrank]),
+    [
+      ["b", 2],
+      ["c", 3],
+      ["a", 1],
+    ],
+  );
 });

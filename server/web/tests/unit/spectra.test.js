@@ -4,7 +4,10 @@ import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
-import { modeOf, multiple, seenDownhole } from "../../draw/orbit.js";
+import { isWallSeen, modeOf, multiple, peaksTrace, seenDownhole } from "../../draw/orbit.js";
+import { loadQuantities } from "../../data/units.js";
+
+await loadQuantities();
 
 test("the low side is down in the picture", () => {
   // A node that lies on the low side, wherever that is.
@@ -20,6 +23,27 @@ test("forward whirl, from u towards v, goes clockwise", () => {
   const { across, up } = seenDownhole(angles.map(Math.cos), angles.map(Math.sin), 0.7);
   assert.ok(across[0] * up[1] - up[0] * across[1] < 0);
   near(Math.hypot(across[1], up[1]), 1);
+});
+
+test("the wall is seen if its circle passes through the picture", () => {
+  const picture = (x, y) => ({ xaxis: { range: x }, yaxis: { range: y } });
+  // A circle of 10 mm.
+  assert.ok(isWallSeen(picture([-11, 11], [-11, 11]), 0.01));
+  assert.ok(isWallSeen(picture([-1, 1], [-10.5, -9]), 0.01));
+  assert.ok(!isWallSeen(picture([-1, 1], [-9.9, -8]), 0.01), "inside");
+  assert.ok(!isWallSeen(picture([7.2, 8], [-8, -7.2]), 0.01), "outside");
+  assert.ok(isWallSeen(picture([7, 8], [-8, -7]), 0.01), "a corner inside");
+});
+
+test("marks of a spectrum are at the interpolated lines that are resolved", () => {
+  const peaks = [
+    { frequency: -2.15, amplitude: 0.0005, whirl: "backward" },
+    { frequency: 0, amplitude: 0.03, whirl: "offset" },
+    { frequency: 40, amplitude: 0.0001, whirl: "forward", is_resolved: false },
+  ];
+  const { x, y } = peaksTrace({ attributes: { peaks } }, {});
+  assert.deepEqual(x, [-2.15]);
+  near(y[0], 0.5);
 });
 
 test("multiples of a frequency are those within half the resolution, up to twelve", () => {

@@ -3,8 +3,7 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { near, QUANTITIES } from "./browser.js";
-import { FIELD_NAMES } from "../../data/field-names.js";
+import { near } from "./browser.js";
 import { choose } from "../../data/settings.js";
 import * as units from "../../data/units.js";
 
@@ -53,6 +52,15 @@ test("values are written with their units", () => {
   assert.equal(units.say("normal_force", 4448.2216152605), "1 klbf");
 });
 
+test("errors and relative biases are shown in per cent", () => {
+  for (const name of ["time_error", "whole_error", "mesh_error_mean_radius", "relative_spread"])
+    assert.equal(units.say(name, 0.16398), "16.4 %");
+  assert.equal(units.say("bias_orbit_radius_rms_49", -0.02), "-2 %");
+  assert.equal(units.say("bias_line_frequency_hz_49_w1", -0.02), "-0.02 Hz");
+  assert.equal(units.title("time_error"), "error by time steps [%]");
+  assert.equal(units.say("error_estimate_displacement", 2e-6), "0.002 mm");
+});
+
 test("names of columns are labels with node, depth, window and variant", () => {
   const label = "lateral vibration";
   assert.equal(units.label("orbit_radius_rms_49"), `${label}, node 49`);
@@ -73,10 +81,10 @@ test("columns of a node name it as links do", () => {
   assert.equal(units.nodeOfColumn(""), "");
 });
 
-test("units of variants are those of the quantity, but biases are shares", () => {
+test("units of variants are those of the quantity, but biases are per cent", () => {
   assert.deepEqual(units.unit("orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
   assert.deepEqual(units.unit("confidence_orbit_radius_rms_49"), { symbol: "mm", size: 0.001 });
-  assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "", size: 1 });
+  assert.deepEqual(units.unit("bias_orbit_radius_rms_49"), { symbol: "%", size: 0.01 });
   assert.equal(units.title("orbit_radius_rms_49"), "lateral vibration, node 49 [mm]");
   assert.equal(units.servedUnit("orbit_radius_rms_49"), "m");
   assert.equal(units.servedUnit("friction_coefficient"), "");
@@ -85,10 +93,6 @@ test("units of variants are those of the quantity, but biases are shares", () =>
 test("the meaning of a column ends with the column's name in scripts", () => {
   assert.match(units.meaning("torque_top"), /Column torque_top\.$/);
   assert.equal(units.meaning("unknown_name"), "");
-});
-
-test("names of the field are of columns that the vocabulary has", () => {
-  for (const name of Object.keys(FIELD_NAMES)) assert.ok(name in QUANTITIES, name);
 });
 
 test("paths of a scenario are those of the vocabulary, whatever their indices", () => {

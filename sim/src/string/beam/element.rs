@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     fn element() -> BeamElement {
-        let steel = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };
+        let steel = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3, grade: None };
         BeamElement::new(BeamSection::pipe(0.159, 0.071, &steel), 0.5)
     }
 

@@ -102,7 +102,8 @@ impl BeamSection {
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3 };
+    const STEEL: Material =
+        Material { youngs_modulus: 2.03e11, density: 7900.0, poissons_ratio: 0.3, grade: None };
 
     #[test]
     fn cowpers_coefficient_has_its_solid_and_thin_limits() {

@@ -7,6 +7,7 @@ use drillsweep_scenario::TimeWindow;
 use serde::{Deserialize, Serialize};
 
 use super::elements::ElementSums;
+use super::fatigue::{FatigueSite, SiteCycles};
 use super::nodes::NodeSums;
 use crate::math::linalg::{Four, Lane};
 
@@ -46,6 +47,8 @@ pub(super) struct LoadBlock {
     pub(super) nodes: Vec<NodeSums>,
     /// Sums of elements, four side by side.
     pub(super) elements: Vec<ElementSums>,
+    /// Stress cycles of elements with a grade.
+    pub(super) cycles: Vec<SiteCycles>,
 }
 
 impl LoadWindow {
@@ -68,9 +71,17 @@ impl LoadWindow {
 }
 
 impl LoadBlocks {
-    /// The block of a number, which is that of the last block or higher.
-    pub(super) fn of_number(&mut self, number: u64, new: impl FnOnce() -> LoadBlock) -> &mut LoadBlock {
+    /// The block of a number, which is that of the last block or higher. The last block ends with the cycles of its `sites` if it is another one.
+    pub(super) fn of_number(
+        &mut self,
+        number: u64,
+        new: impl FnOnce() -> LoadBlock,
+        sites: &[FatigueSite],
+    ) -> &mut LoadBlock {
         if self.blocks.back().is_none_or(|(last, _)| *last != number) {
+            if let Some((_, last)) = self.blocks.back_mut() {
+                last.close(sites);
+            }
             if self.blocks.len() == MOST_BLOCKS {
                 self.blocks.pop_front();
             }
@@ -81,17 +92,19 @@ impl LoadBlocks {
     }
 
     /// Sum of the blocks within `window` \[s\], or of all those that overlap it if it is shorter than a block; absent if there are none.
-    pub(super) fn merged(&self, window: TimeWindow) -> Option<LoadBlock> {
+    pub(super) fn merged(&self, window: TimeWindow, sites: &[FatigueSite]) -> Option<LoadBlock> {
         let TimeWindow { from, to } = window;
         let slack = ROUNDING * (to - from);
         let blocks = || self.blocks.iter().map(|(_, block)| block);
         let within = |block: &&LoadBlock| block.start >= from - slack && block.end <= to + slack;
         let overlaps = |block: &&LoadBlock| block.end > from && block.start < to;
         let sum = |sum: Option<LoadBlock>, block: &LoadBlock| {
+            let mut block = block.clone();
+            block.close(sites);
             Some(match sum {
-                None => block.clone(),
+                None => block,
                 Some(mut sum) => {
-                    sum.add(block);
+                    sum.add(&block);
                     sum
                 }
             })
@@ -102,13 +115,19 @@ impl LoadBlocks {
 }
 
 impl LoadBlock {
-    pub(super) fn new(start: f64, nodes: usize, elements: usize) -> Self {
+    pub(super) fn new(start: f64, nodes: usize, elements: usize, sites: usize) -> Self {
         Self {
             start,
             end: start,
             nodes: vec![NodeSums::none(); nodes],
             elements: vec![ElementSums::none(); elements],
+            cycles: vec![SiteCycles::default(); sites],
         }
+    }
+
+    /// Ends the cycles of its sites.
+    fn close(&mut self, sites: &[FatigueSite]) {
+        self.cycles.iter_mut().zip(sites).for_each(|(cycles, site)| site.close(cycles));
     }
 
     /// Adds the block that follows.
@@ -116,5 +135,6 @@ impl LoadBlock {
         self.end = next.end;
         self.nodes.iter_mut().zip(&next.nodes).for_each(|(sum, next)| sum.add(next));
         self.elements.iter_mut().zip(&next.elements).for_each(|(sum, next)| sum.add(next));
+        self.cycles.iter_mut().zip(&next.cycles).for_each(|(sum, next)| sum.add(next));
     }
 }

@@ -1,7 +1,9 @@
 //! Loads of elements.
 
+use drillsweep_scenario::Grade;
 use serde::Serialize;
 
+use super::fatigue::{FatigueSite, SiteCycles};
 use super::moment::Moment;
 use super::statistics::{Peak, RmsAndPeak, Span, Sums};
 use crate::math::dof::{DOFS, Dofs};
@@ -17,12 +19,20 @@ pub struct ElementLoads {
     pub bending_moment: RmsAndPeak,
     /// Largest bending stress, at the outer diameter \[Pa\].
     pub bending_stress: f64,
+    /// Largest axial stress by the effective tension, in magnitude \[Pa\].
+    pub axial_stress: f64,
+    /// Largest shear stress by the torque, at the outer diameter \[Pa\].
+    pub torsional_stress: f64,
     /// Effective tension \[N\].
     pub tension: Span,
     /// Torque \[N m\], negative if it opposes clockwise rotation.
     pub torque: Span,
     /// Largest equivalent stress by von Mises \[Pa\] of bending, tension, torque and the pressures of the mud, at the outer and the inner diameter.
     pub equivalent_stress: Peak,
+    /// Largest equivalent stress over the least yield strength; absent without a grade.
+    pub yield_ratio: Option<f64>,
+    /// Part of the life that fatigue takes in a second, of the place around the outer diameter at which it is largest \[1/s\]; absent without a grade.
+    pub fatigue_rate: Option<f64>,
 }
 
 /// Quantities that are integrated.
@@ -45,10 +55,36 @@ pub(super) type ElementSums = Sums<INTEGRALS, EXTREMES>;
 
 /// Elements of a string, and their last sample. Element e joins the nodes e and e + 1.
 pub(super) struct Elements<const D: usize> {
-    /// Outer bending stress by moment of each element \[1/m3\].
-    fibres: Vec<f64>,
+    outer_stresses: Vec<OuterStress>,
+    sites: Vec<FatigueSite>,
+    /// Place of theta_z in a node's values.
+    twist: Option<usize>,
     groups: Vec<ElementGroup<D>>,
     samples: Vec<[Four; INTEGRALS]>,
+}
+
+/// Stresses of an element at its outer diameter by its loads.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OuterStress {
+    /// Bending stress by moment \[1/m3\].
+    bending: f64,
+    /// Axial stress by tension \[1/m2\].
+    axial: f64,
+    /// Shear stress by torque \[1/m3\].
+    torsion: f64,
+    /// Least yield strength \[Pa\]; absent without a grade.
+    yield_strength: Option<f64>,
+}
+
+impl OuterStress {
+    fn new(section: &BeamSection, grade: Option<Grade>) -> Self {
+        Self {
+            bending: section.outer_bending_stress(),
+            axial: 1.0 / section.area,
+            torsion: 0.5 * section.outer_diameter / section.polar_moment(),
+            yield_strength: grade.map(Grade::yield_strength),
+        }
+    }
 }
 
 /// Constants of four elements.
@@ -86,6 +122,27 @@ struct Row<const D: usize> {
     constant: Four,
 }
 
+/// Values of the nodes at both ends of four elements.
+struct Ends<const D: usize> {
+    upper: [Four; D],
+    lower: [Four; D],
+}
+
+impl<const D: usize> Ends<D> {
+    #[inline(always)]
+    fn new(group: usize, moment: &Moment<'_, D>) -> Self {
+        let neighbourhood = moment.displacement.neighbourhood(group);
+        Self { upper: neighbourhood[1], lower: std::array::from_fn(|dof| after(neighbourhood, dof)) }
+    }
+
+    #[inline(always)]
+    fn value(&self, row: &Row<D>) -> Four {
+        (0..D).fold(row.constant, |sum, dof| {
+            row.lower[dof].mul_add(self.lower[dof], row.upper[dof].mul_add(self.upper[dof], sum))
+        })
+    }
+}
+
 impl<const D: usize> Elements<D> {
     pub(super) fn new(
         model: &Model,
@@ -98,9 +155,13 @@ impl<const D: usize> Elements<D> {
             .step_by(Four::LANES)
             .map(|first| ElementGroup::new(model, equilibrium, freedoms, rest, first))
             .collect();
-        let fibre = |element: &StringElement| element.beam.section().outer_bending_stress();
+        let elements = model.elements.iter().zip(&model.mesh.elements);
         Self {
-            fibres: model.elements.iter().map(fibre).collect(),
+            outer_stresses: elements
+                .map(|(element, meshed)| OuterStress::new(element.beam.section(), meshed.material.grade))
+                .collect(),
+            sites: FatigueSite::of(model, equilibrium),
+            twist: freedoms.twist(),
             samples: vec![[Four::ZERO; INTEGRALS]; groups.len()],
             groups,
         }
@@ -108,7 +169,7 @@ impl<const D: usize> Elements<D> {
 
     /// Number of elements.
     pub(super) fn count(&self) -> usize {
-        self.fibres.len()
+        self.outer_stresses.len()
     }
 
     /// Number of groups of four elements.
@@ -116,9 +177,20 @@ impl<const D: usize> Elements<D> {
         self.groups.len()
     }
 
-    /// Outer bending stress by moment of an element \[1/m3\].
-    pub(super) fn fibre(&self, element: usize) -> f64 {
-        self.fibres[element]
+    /// Stresses of an element at its outer diameter by its loads.
+    pub(super) fn outer_stress(&self, element: usize) -> OuterStress {
+        self.outer_stresses[element]
+    }
+
+    /// Elements with a grade.
+    pub(super) fn sites(&self) -> &[FatigueSite] {
+        &self.sites
+    }
+
+    /// Part of an element's life that fatigue takes in a second, from the cycles of all sites over `duration` \[s\]; absent without a grade.
+    pub(super) fn damage(&self, element: usize, cycles: &[SiteCycles], duration: f64) -> Option<f64> {
+        let place = self.sites.binary_search_by_key(&element, |site| site.element).ok()?;
+        Some(self.sites[place].damage(&cycles[place]) / duration)
     }
 
     pub(super) fn start(&mut self, moment: &Moment<'_, D>) {
@@ -127,7 +199,28 @@ impl<const D: usize> Elements<D> {
         }
     }
 
-    pub(super) fn observe(&mut self, moment: &Moment<'_, D>, h: f64, sums: &mut [ElementSums]) {
+    pub(super) fn observe(
+        &mut self,
+        moment: &Moment<'_, D>,
+        h: f64,
+        sums: &mut [ElementSums],
+        cycles: &mut [SiteCycles],
+    ) {
+        self.integrate(moment, h, sums);
+        let mut turning = None;
+        for (site, cycles) in self.sites.iter().zip(cycles) {
+            let (number, lane) = (site.element / Four::LANES, site.element % Four::LANES);
+            let moments = match turning {
+                Some((of, moments)) if of == number => moments,
+                _ => self.groups[number].turning_moment(number, self.twist, moment),
+            };
+            turning = Some((number, moments));
+            let tension = self.samples[number][TENSION].lane(lane);
+            site.observe(tension, moments.map(|axis| axis.lane(lane)), cycles);
+        }
+    }
+
+    fn integrate(&mut self, moment: &Moment<'_, D>, h: f64, sums: &mut [ElementSums]) {
         let time = Four::splat(moment.time);
         for (number, sums) in sums.iter_mut().enumerate() {
             let group = &self.groups[number];
@@ -224,19 +317,25 @@ impl<const D: usize> ElementGroup<D> {
 
     #[inline(always)]
     fn sample(&self, group: usize, moment: &Moment<'_, D>) -> [Four; INTEGRALS] {
-        let neighbourhood = moment.displacement.neighbourhood(group);
-        let upper = neighbourhood[1];
-        let lower: [Four; D] = std::array::from_fn(|dof| after(neighbourhood, dof));
-        let value = |row: &Row<D>| {
-            (0..D).fold(row.constant, |sum, dof| {
-                row.lower[dof].mul_add(lower[dof], row.upper[dof].mul_add(upper[dof], sum))
-            })
-        };
+        let ends = Ends::new(group, moment);
         let at_end = |end: usize| {
-            let [x, y] = [0, 1].map(|plane: usize| value(&self.bending[plane][end]));
+            let [x, y] = [0, 1].map(|plane: usize| ends.value(&self.bending[plane][end]));
             x.mul_add(x, y * y)
         };
-        [at_end(0).max(at_end(1)), value(&self.tension), value(&self.torque)]
+        [at_end(0).max(at_end(1)), ends.value(&self.tension), ends.value(&self.torque)]
+    }
+
+    /// Bending moment in the middle of the elements \[N m\] along two axes that turn with the pipe; `twist` is the place of theta_z in a node's values.
+    fn turning_moment(&self, group: usize, twist: Option<usize>, moment: &Moment<'_, D>) -> [Four; 2] {
+        let ends = Ends::new(group, moment);
+        let half = Four::splat(0.5);
+        let twisted = twist.map_or(Four::ZERO, |twist| (ends.upper[twist] + ends.lower[twist]) * half);
+        let (sin, cos) = (twisted + Four::splat(moment.angle)).sin_cos();
+        let [x, y] = [0, 1].map(|plane: usize| {
+            let [upper, lower] = [0, 1].map(|end: usize| ends.value(&self.bending[plane][end]));
+            (upper + lower) * half
+        });
+        [x.mul_add(cos, y * sin), y.mul_add(cos, -(x * sin))]
     }
 
     /// Square of the equivalent stress by von Mises \[Pa2\], the larger of both diameters. With the effective tension, axial stress less the mean of
@@ -253,21 +352,28 @@ impl<const D: usize> ElementGroup<D> {
     }
 }
 
-/// Loads of an element by the sums over `duration` \[s\], with its outer bending stress by moment \[1/m3\].
+/// Loads of an element by the sums over `duration` \[s\].
 pub(super) fn element_loads(
     groups: &[ElementSums],
     element: usize,
     duration: f64,
-    bending_stress: f64,
+    outer_stress: OuterStress,
 ) -> ElementLoads {
     let (sums, lane) = (&groups[element / Four::LANES], element % Four::LANES);
     let bending_moment = sums.of_square([BENDING_SQUARED, BENDING_PEAK], lane, duration);
     let Peak { value, time } = sums.peak(STRESS_PEAK, lane);
+    let tension = sums.span(TENSION, [LOWEST_TENSION, HIGHEST_TENSION], lane, duration);
+    let torque = sums.span(TORQUE, [LOWEST_TORQUE, HIGHEST_TORQUE], lane, duration);
+    let magnitude = |span: &Span| span.least.abs().max(span.largest.abs());
     ElementLoads {
-        bending_stress: bending_moment.peak.value * bending_stress,
+        bending_stress: bending_moment.peak.value * outer_stress.bending,
+        axial_stress: magnitude(&tension) * outer_stress.axial,
+        torsional_stress: magnitude(&torque) * outer_stress.torsion,
         bending_moment,
-        tension: sums.span(TENSION, [LOWEST_TENSION, HIGHEST_TENSION], lane, duration),
-        torque: sums.span(TORQUE, [LOWEST_TORQUE, HIGHEST_TORQUE], lane, duration),
+        tension,
+        torque,
+        yield_ratio: outer_stress.yield_strength.map(|strength| value.max(0.0).sqrt() / strength),
+        fatigue_rate: None,
         equivalent_stress: Peak { value: value.max(0.0).sqrt(), time },
     }
 }

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod elements;
+mod fatigue;
 mod moment;
 mod nodes;
 mod statistics;
@@ -91,16 +92,18 @@ impl<const D: usize> Loads<D> {
             }
             return;
         };
-        let new_block = || LoadBlock::new(moment.time - h, self.nodes.groups(), self.elements.groups());
-        let block = blocks.of_number(number, new_block);
+        let sites = self.elements.sites();
+        let new_block =
+            || LoadBlock::new(moment.time - h, self.nodes.groups(), self.elements.groups(), sites.len());
+        let block = blocks.of_number(number, new_block, sites);
         block.end = moment.time;
         self.nodes.observe(moment, h, &mut block.nodes);
-        self.elements.observe(moment, h, &mut block.elements);
+        self.elements.observe(moment, h, &mut block.elements, &mut block.cycles);
     }
 
     /// Loads over the blocks within `window` \[s\].
     pub(super) fn records(&self, blocks: &LoadBlocks, window: TimeWindow) -> LoadRecords {
-        let Some(whole) = blocks.merged(window) else {
+        let Some(whole) = blocks.merged(window, self.elements.sites()) else {
             return LoadRecords { window, nodes: Vec::new(), elements: Vec::new() };
         };
         let duration = whole.end - whole.start;
@@ -111,7 +114,16 @@ impl<const D: usize> Loads<D> {
                 .collect(),
             elements: (0..self.elements.count())
                 .map(|element| {
-                    element_loads(&whole.elements, element, duration, self.elements.fibre(element))
+                    let loads = element_loads(
+                        &whole.elements,
+                        element,
+                        duration,
+                        self.elements.outer_stress(element),
+                    );
+                    ElementLoads {
+                        fatigue_rate: self.elements.damage(element, &whole.cycles, duration),
+                        ..loads
+                    }
                 })
                 .collect(),
         }

@@ -413,7 +413,7 @@ mod tests {
         .unwrap()
     }
 
-    fn refinement(members: Value) -> Refinement {
+    fn refinement(members: &Value) -> Refinement {
         let mut request = json!({ "by": "class" });
         request.as_object_mut().unwrap().extend(members.as_object().unwrap().clone());
         serde_json::from_value(request).unwrap()
@@ -475,7 +475,7 @@ mod tests {
 
     #[test]
     fn an_edge_is_located_to_a_fiftieth_of_both_axes_with_a_tenth_of_a_grid() {
-        let request = refinement(json!({ "budget": 1000 }));
+        let request = refinement(&json!({ "budget": 1000 }));
         let mut points = grid([6, 6]);
         loop {
             let (added, state) = next(&request, &points, severity);
@@ -507,7 +507,7 @@ mod tests {
 
     #[test]
     fn lines_of_a_grid_are_bisected_along_one_parameter() {
-        let request = refinement(json!({ "over": ["mud_density"], "resolution": 0.01 }));
+        let request = refinement(&json!({ "over": ["mud_density"], "resolution": 0.01 }));
         let mut points = grid([4, 3]);
         let mut rounds = 0;
         loop {
@@ -528,7 +528,7 @@ mod tests {
 
     #[test]
     fn numbers_are_divided_where_they_change() {
-        let by_column = refinement(json!({ "by": "bit_stick_slip_severity", "difference": 0.3 }));
+        let by_column = refinement(&json!({ "by": "bit_stick_slip_severity", "difference": 0.3 }));
         // A ramp of which only the last of seven steps is steep.
         let steep = |[flow_rate, _]: [f64; 2]| Some(if flow_rate > 0.059 { 2.0 } else { 20.0 * flow_rate });
         let (added, state) = next(&by_column, &grid([8, 8]), steep);
@@ -541,7 +541,7 @@ mod tests {
 
     #[test]
     fn a_budget_takes_the_longest_edges_and_points_without_results_are_no_neighbours() {
-        let request = refinement(json!({ "budget": 3 }));
+        let request = refinement(&json!({ "budget": 3 }));
         let (added, state) = next(&request, &grid([6, 6]), severity);
         assert_eq!((added.len(), state.proposed), (3, 3));
         assert!(state.open_edges > 3);
@@ -554,7 +554,7 @@ mod tests {
     fn fields_are_checked_before_points_are_read() {
         let original = sweep();
         let pointers = |members: Value| {
-            let refused = RefinedSamples::new(refinement(members), &original, &OperatingLimits::default())
+            let refused = RefinedSamples::new(refinement(&members), &original, &OperatingLimits::default())
                 .err()
                 .expect("refused");
             refused.errors.into_iter().filter_map(|error| error.pointer).collect::<Vec<_>>()
@@ -568,7 +568,7 @@ mod tests {
         );
         assert_eq!(pointers(json!({ "difference": 0.5 })), ["/refine/difference"]);
         assert_eq!(pointers(json!({ "limits": "flow" })), ["/refine/limits"]);
-        let nothing = RefinedSamples::new(refinement(json!({})), &original, &OperatingLimits::default())
+        let nothing = RefinedSamples::new(refinement(&json!({})), &original, &OperatingLimits::default())
             .unwrap()
             .finish()
             .unwrap_err();

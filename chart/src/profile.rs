@@ -75,7 +75,7 @@ mod tests {
             .with("friction_coefficient", column(&[0.01, 0.02]))
             .with("torque", column(&[9940.0, 5219.0]))
             .with("regime", Column::Text(vec![None, None]));
-        let svg = profile(&table, None, "C_f").unwrap().svg();
+        let svg = profile(&table, None, "C_f", UnitSystem::Si).unwrap().svg();
         assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
         assert!(
             profile(&table, Some(&["torque".to_owned()]), "", UnitSystem::Si)

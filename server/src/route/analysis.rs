@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::analysis::{self, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
-use drillsweep_api::judgement::{Judgement, LimitChanges, Line};
+use drillsweep_api::judgement::{Judgement, LimitChanges, Line, OperatingLimits};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use drillsweep_table::tables;
 use serde::{Deserialize, Deserializer};

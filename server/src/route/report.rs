@@ -91,7 +91,8 @@ pub(crate) async fn of_sweep(
 ) -> Result<Response> {
     let limits = app.config.operating_limits.with(&query.limits);
     let record = sweep(&app, &id).await?;
-    let tag = Tag::of("sweep report", &(&id, record.version, &record.name, &record.tags_json, &query, &limits));
+    let tag =
+        Tag::of("sweep report", &(&id, record.version, &record.name, &record.tags_json, &query, &limits));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -149,7 +150,8 @@ pub(crate) async fn of_point(
     let record = sweep(&app, &id).await?;
     let point = analysis::point(&app, &id, n).await?;
     // The version of the sweep changes with its points and reference runs.
-    let tag = Tag::of("point report", &(&point, record.version, &record.name, &record.tags_json, &query, &limits));
+    let tag =
+        Tag::of("point report", &(&point, record.version, &record.name, &record.tags_json, &query, &limits));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }

@@ -415,6 +415,8 @@ def test_the_lines_of_a_view_get_what_it_shows(
     page = opened(f"#/sweeps/{named.id}?view={view}{f'&with={other.id}' if is_difference else ''}")
     if view.startswith("table"):
         expect(page.locator(".rows tbody tr:not(.gap)")).to_have_count(8)
+    elif view.startswith("parallel"):
+        parallel(page)
     else:
         drawn(page, "." if not view.startswith("effects") else "Shares of the variance")
     lines = lines_of(page)

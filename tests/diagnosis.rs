@@ -133,7 +133,7 @@ fn operating_window_follows_its_limits_without_new_runs() {
         .body_mut()
         .read_to_string()
         .unwrap();
-    assert!(picture.contains("<svg") && picture.contains("over_limit"), "{picture}");
+    assert!(picture.contains("<svg") && picture.contains("class: over limit"), "{picture}");
 
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
     for path in ["window", "points/1/diagnosis", "table"] {

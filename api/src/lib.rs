@@ -20,6 +20,7 @@ pub mod point;
 pub mod preset;
 pub mod problem;
 pub mod refine;
+pub mod refinement;
 pub mod request;
 pub mod service;
 pub mod sweep;
@@ -41,7 +42,8 @@ pub use point::{
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
-pub use refine::{RefinedSamples, Refinement, RefinementState};
+pub use refine::RefinedSamples;
+pub use refinement::{Refinement, RefinementState};
 pub use request::{AppendRequest, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
     Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,

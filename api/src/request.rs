@@ -13,7 +13,7 @@ use crate::axis::{Axis, AxisName};
 use crate::bounded;
 use crate::listed::ListedPoints;
 use crate::problem::{FieldProblem, ProblemDetails};
-use crate::refine::Refinement;
+use crate::refinement::Refinement;
 
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///

@@ -5,7 +5,7 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
 use crate::problem::FieldProblem;
-use crate::refine::RefinementState;
+use crate::refinement::RefinementState;
 use crate::request::{AppendRequest, SweepRequest};
 use crate::view::verification::WorstBias;
 

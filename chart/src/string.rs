@@ -46,6 +46,8 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
             None => add(kind, f64::from(section.count) * section.length, section.outer_diameter),
         }
     }
+    // Sums of lengths miss round numbers, and with them the last tick.
+    let depth = (1e6 * depth).round() / 1e6;
     let mut strips = vec![[0.0, depth]];
     strips.extend(
         assembly.filter(|start| *start > 0.0 && depth - start < SHORT * depth).map(|start| [start, depth]),

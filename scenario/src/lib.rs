@@ -164,7 +164,7 @@ pub struct Material {
     pub poissons_ratio: f64,
     /// Grade of the steel, from which strengths follow; absent means unknown: the results have no margin to yield and no fatigue. It
     /// changes no motion.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub grade: Option<Grade>,
 }
 

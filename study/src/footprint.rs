@@ -7,9 +7,9 @@ use super::mesh_estimate::MOST_ELEMENTS;
 use drillsweep_sim::math::signal::sample_range;
 use drillsweep_sim::solve::model::{Model, ModelError};
 use drillsweep_sim::solve::run::{
-    BLOCK_BYTES, EnergyRow, LEDGER_RATE_HZ, LOAD_BYTES, SNAPSHOT_BLOCK_BYTES, Series, SnapshotSeries,
-    SnapshotTimes, additional_bit, course_samples, kept_window_at_most, orbit_window_at_most, recorded_nodes,
-    spectrum_windows_at_most,
+    BLOCK_BYTES, CYCLE_BYTES, EnergyRow, LEDGER_RATE_HZ, LOAD_BYTES, SNAPSHOT_BLOCK_BYTES, Series,
+    SnapshotSeries, SnapshotTimes, additional_bit, course_samples, kept_window_at_most, orbit_window_at_most,
+    recorded_nodes, spectrum_windows_at_most,
 };
 
 /// Bytes of a node with its elements: model, equilibrium and run (`tests/allocation.rs` holds them below it).
@@ -71,8 +71,11 @@ impl Footprint {
         let of_finer_meshes = if is_refined { PER_NODE_OF_FINER_MESHES } else { 0 };
         // As they are and encoded in a checkpoint.
         let of_loads = if model.effects.transient { 2 * LOAD_BYTES } else { 0 };
+        let graded = model.mesh.elements.iter().filter(|element| element.material.grade.is_some()).count();
+        let of_cycles = if model.effects.transient { 2 * CYCLE_BYTES * graded as u64 } else { 0 };
         Self {
             memory_bytes: (PER_NODE + of_finer_meshes + of_loads) * model.node_count() as u64
+                + of_cycles
                 + recorded.memory().max(snapshots.memory_of_table())
                 + snapshots.memory_of_blocks()
                 + study,

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use crate::judgement::MotionClass;
 
 /// Loads whose largest values are reported. The depth of NAME is the column `NAME_depth`.
-static LOADS: [&Quantity; 11] = [
+static LOADS: [&Quantity; 13] = [
     &BIT_STICK_SLIP_SEVERITY,
     &LARGEST_LATERAL_ACCELERATION_RMS,
     &LARGEST_LATERAL_ACCELERATION,
@@ -17,6 +17,8 @@ static LOADS: [&Quantity; 11] = [
     &LARGEST_SIDE_FORCE,
     &LARGEST_BENDING_STRESS,
     &LARGEST_EQUIVALENT_STRESS,
+    &LARGEST_YIELD_RATIO,
+    &LARGEST_FATIGUE_RATE,
     &LARGEST_ORBIT_SIZE,
     &LARGEST_BUCKLING_RATIO,
 ];

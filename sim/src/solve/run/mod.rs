@@ -22,7 +22,9 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use contact_statistics::ContactStatistics;
 pub use disturbance::{DISTURBANCE, disturbance};
 pub use histories::{Histories, NodeHistory, Series};
-pub use loads::{ElementLoads, LOAD_BYTES, LoadRecords, NodeLoads, Peak, RmsAndPeak, SHOCKS_G, Span};
+pub use loads::{
+    CYCLE_BYTES, ElementLoads, LOAD_BYTES, LoadRecords, NodeLoads, Peak, RmsAndPeak, SHOCKS_G, Span,
+};
 pub use recorded::{additional_bit, recorded_nodes};
 pub use records::{Outcome, Records, TransientEffort};
 pub use settle::{

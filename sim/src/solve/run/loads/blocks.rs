@@ -12,7 +12,7 @@ use super::nodes::NodeSums;
 use crate::math::linalg::{Four, Lane};
 
 /// Number of blocks kept: those of the longest settled window, and one that has begun at either end.
-const MOST_BLOCKS: usize = 10;
+pub(super) const MOST_BLOCKS: usize = 10;
 
 /// Bytes of a node and an element in all blocks of a settled window.
 pub const LOAD_BYTES: u64 =

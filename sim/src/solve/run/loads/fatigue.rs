@@ -7,6 +7,7 @@
 use drillsweep_scenario::Grade;
 use serde::{Deserialize, Serialize};
 
+use super::blocks::MOST_BLOCKS;
 use crate::solve::model::{Model, StringElement};
 use crate::solve::statics::Equilibrium;
 
@@ -36,6 +37,10 @@ pub(super) struct FatigueSite {
     /// Tensile strength \[Pa\].
     strength: f64,
 }
+
+/// Bytes of the cycles of an element with a grade, at most: in the block that is open, and in all blocks.
+pub const CYCLE_BYTES: u64 =
+    (2 * PAIRS * MOST_POINTS * size_of::<f64>() + MOST_BLOCKS * size_of::<SiteCycles>()) as u64;
 
 /// Cycles of a site's stresses within a block.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -153,7 +158,7 @@ fn damage_of_cycle(a: f64, b: f64, strength: f64) -> f64 {
     let reserve = (1.0 - mean.max(0.0) / strength).max(LEAST_RESERVE);
     let range = 1e-6 * (a - b).abs() / reserve;
     let fourth = range.powi(4);
-    // The curves meet at 10^5 cycles.
+    // The branches meet at 10^5.01 cycles.
     (fourth / CURVE[0]).min(fourth * range / CURVE[1])
 }
 
@@ -194,9 +199,9 @@ mod tests {
 
     #[test]
     fn the_curve_has_its_lives_and_goodman_halves_the_range() {
-        // 10^5 cycles at 10^2.4 MPa, where both branches meet; 10^7 at 10^((17.01 - 7) / 5).
+        // Both branches meet at 10^2.4 MPa and 10^5.01 cycles; 10^7 cycles are reached at 10^((17.01 - 7) / 5) MPa.
         let life = |range: f64| 1.0 / damage_of_cycle(-0.5e6 * range, 0.5e6 * range, STRONG);
-        for (log_range, log_life) in [(2.4_f64, 5.0), (10.01 / 5.0, 7.0), (2.6, 14.61 - 4.0 * 2.6)] {
+        for (log_range, log_life) in [(2.4_f64, 5.01), (10.01 / 5.0, 7.0), (2.6, 14.61 - 4.0 * 2.6)] {
             assert!((life(10_f64.powf(log_range)).log10() - log_life).abs() < 1e-9);
         }
         // A mean of half the strength leaves half of it: the range counts twice.

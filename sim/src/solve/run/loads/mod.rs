@@ -26,6 +26,7 @@ use nodes::{Nodes, node_loads};
 
 pub use blocks::LOAD_BYTES;
 pub use elements::ElementLoads;
+pub use fatigue::CYCLE_BYTES;
 pub use nodes::{NodeLoads, SHOCKS_G};
 pub use statistics::{Peak, RmsAndPeak, Span};
 

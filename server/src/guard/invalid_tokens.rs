@@ -152,6 +152,9 @@ fn address(peer: Option<Peer>) -> IpAddr {
 
 #[cfg(test)]
 mod tests {
+    use axum::http::{StatusCode, header};
+    use axum::response::IntoResponse as _;
+
     use super::*;
 
     fn peer(address: [u8; 4]) -> Option<Peer> {
@@ -167,6 +170,7 @@ mod tests {
         let invalid_tokens = InvalidTokens::default();
         let (here, there) = (peer([192, 0, 2, 1]), peer([192, 0, 2, 2]));
         invalid_tokens.know(&secret(1));
+        let begun = Instant::now();
         let mut admitted = 0;
         for guess in 100..1_100 {
             if invalid_tokens.admit(here, Some(&secret(guess))).is_ok() {
@@ -174,15 +178,66 @@ mod tests {
                 invalid_tokens.refuse(here, Some(&secret(guess)));
             }
         }
-        // The test may take some seconds, and the bucket leaks one in 2 s.
-        assert!((20..60).contains(&admitted), "{admitted}");
+        // A burst of 20, and one for every 2 s of the loop.
+        let leaked = begun.elapsed().as_secs_f64() / 2.0;
+        assert!(admitted >= 20 && admitted as f64 <= 20.0 + leaked, "{admitted}");
         assert_eq!(invalid_tokens.refused.get(), admitted);
         assert!(invalid_tokens.admit(here, Some(&secret(1))).is_ok());
         assert!(invalid_tokens.admit(there, Some(&secret(2))).is_ok());
         // A revoked token counts like any invalid one.
         invalid_tokens.refuse(here, Some(&secret(1)));
-        let problem = invalid_tokens.admit(here, Some(&secret(1))).expect_err("refused").into_problem();
-        assert_eq!(problem.status, 429);
+        let refused = invalid_tokens.admit(here, Some(&secret(1))).expect_err("refused").into_response();
+        assert_eq!(refused.status(), StatusCode::TOO_MANY_REQUESTS);
+        assert_eq!(refused.headers()[header::RETRY_AFTER], "2", "one leaks in 2 s");
+    }
+
+    #[test]
+    fn the_level_falls_at_a_constant_rate_to_zero() {
+        let at = Instant::now();
+        let source = Source { level: 12.0, at, logged: None, unlogged: 0 };
+        for (seconds, level) in [(0, 12.0), (1, 11.5), (2, 11.0), (10, 7.0), (24, 0.0), (100, 0.0)] {
+            assert_eq!(source.level(at + Duration::from_secs(seconds)), level, "after {seconds} s");
+        }
+    }
+
+    #[test]
+    fn refusals_within_a_minute_of_a_line_of_the_log_are_counted_for_the_next_one() {
+        let invalid_tokens = InvalidTokens::default();
+        let here = peer([192, 0, 2, 1]);
+        (0..3).for_each(|_| invalid_tokens.refuse(here, None));
+        let mut state = invalid_tokens.state();
+        let source = state.addresses.get_mut(&address(here)).expect("it is kept");
+        assert_eq!(source.unlogged, 2);
+        source.logged = source.logged.and_then(|logged| logged.checked_sub(Duration::from_secs(60)));
+        drop(state);
+        invalid_tokens.refuse(here, None);
+        assert_eq!(invalid_tokens.state().addresses[&address(here)].unlogged, 0);
+    }
+
+    #[test]
+    fn the_half_of_the_addresses_that_is_longest_silent_makes_room() {
+        let begin = Instant::now();
+        let mut state = State::default();
+        for number in 0..MOST_ADDRESSES as u32 {
+            let at = begin + Duration::from_secs(number.into());
+            let source = Source { level: 1.0, at, logged: None, unlogged: 0 };
+            state.addresses.insert(IpAddr::V4(number.into()), source);
+        }
+        state.make_room();
+        let kept = state.addresses.len();
+        assert!(kept.abs_diff(MOST_ADDRESSES / 2) <= 1, "{kept}");
+        let earliest = state.addresses.values().map(|source| source.at).min();
+        assert_eq!(earliest, Some(begin + Duration::from_secs((MOST_ADDRESSES - kept) as u64)));
+    }
+
+    #[test]
+    fn addresses_of_one_moment_make_room() {
+        let at = Instant::now();
+        let source = || Source { level: 1.0, at, logged: None, unlogged: 0 };
+        let addresses = (0..MOST_ADDRESSES as u32).map(|number| (IpAddr::V4(number.into()), source()));
+        let mut state = State { addresses: addresses.collect(), ..State::default() };
+        state.make_room();
+        assert!(state.addresses.len() < MOST_ADDRESSES);
     }
 
     #[test]

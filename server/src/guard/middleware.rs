@@ -293,4 +293,52 @@ mod tests {
         let response = routes.oneshot(request.unwrap()).await.unwrap();
         assert_eq!(response.status(), StatusCode::OK, "what has changed something is no copy");
     }
+
+    /// RFC 9112 section 3.2: of HTTP/1.1 on, a request has exactly one host, that of an absolute target.
+    #[tokio::test]
+    async fn a_request_has_one_host_that_of_its_target() {
+        let routes = Router::new().fallback(async || "content").layer(from_fn(refuse_unclear_hosts));
+        for (version, target, hosts, status) in [
+            (Version::HTTP_11, "/", &["a"][..], 200),
+            (Version::HTTP_11, "http://A:80/", &["a:80"], 200),
+            (Version::HTTP_11, "http://b/", &["a"], 400),
+            (Version::HTTP_11, "/", &["a", "a"], 400),
+            (Version::HTTP_11, "/", &[], 400),
+            (Version::HTTP_10, "/", &[], 200),
+            (Version::HTTP_10, "/", &["a", "a"], 400),
+        ] {
+            let request = Request::get(target).version(version).extension(Peer(([127, 0, 0, 1], 80).into()));
+            let request = hosts.iter().fold(request, |request, host| request.header(header::HOST, *host));
+            let response = routes.clone().oneshot(request.body(Body::empty()).unwrap()).await.unwrap();
+            assert_eq!(response.status(), status, "{version:?} {target} {hosts:?}");
+        }
+    }
+
+    #[tokio::test]
+    async fn a_request_of_the_longest_target_and_header_is_admitted_and_one_byte_more_is_not() {
+        let routes = Router::new().fallback(async || "content").layer(from_fn(refuse_long_requests));
+        let status = async |target: usize, header: usize| {
+            let request = Request::get(format!("/{}", "x".repeat(target - 1)))
+                .header("x-one", "1")
+                .header("x-padding", "x".repeat(header - "x-one1x-padding".len()));
+            routes.clone().oneshot(request.body(Body::empty()).unwrap()).await.unwrap().status().as_u16()
+        };
+        assert_eq!(status(8 * 1024, 32 * 1024).await, 200);
+        assert_eq!(status(8 * 1024 + 1, 32 * 1024).await, 414);
+        assert_eq!(status(8 * 1024, 32 * 1024 + 1).await, 431);
+    }
+
+    #[tokio::test]
+    async fn a_panic_is_a_failure_of_the_service_whose_text_is_not_sent() {
+        let panicking = async || -> &'static str { panic!("secret") };
+        let routes = Router::new().route("/", get(panicking)).layer(
+            ServiceBuilder::new().layer(from_fn(write_problems)).layer(CatchPanicLayer::custom(answer_panic)),
+        );
+        let response = routes.oneshot(Request::get("/").body(Body::empty()).unwrap()).await.unwrap();
+        assert_eq!(response.status(), StatusCode::INTERNAL_SERVER_ERROR);
+        let body = to_bytes(response.into_body(), 1_000).await.unwrap();
+        let problem: serde_json::Value = serde_json::from_slice(&body).unwrap();
+        assert_eq!(problem["type"], "urn:drillsweep:problem:internal");
+        assert!(!problem.to_string().contains("secret"), "{problem}");
+    }
 }

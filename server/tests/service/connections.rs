@@ -154,6 +154,17 @@ async fn busy_connections_leave_room_for_health() {
     service.end().await;
 }
 
+/// RFC 9110 section 8.6: a length that is known is stated.
+#[tokio::test]
+async fn an_answer_of_known_length_states_it() {
+    let service = Service::start(ConnectionLimits::default()).await;
+    let answer = service.ask("/v1/sweeps").await;
+    let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+    let length = format!("content-length: {}", body.len());
+    assert!(head.lines().any(|line| line == length), "{answer}");
+    service.end().await;
+}
+
 #[tokio::test]
 async fn a_target_too_long_to_be_read_is_refused() {
     let service = Service::start(ConnectionLimits::default()).await;

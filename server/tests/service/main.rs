@@ -12,6 +12,7 @@ mod files;
 mod follow;
 mod large;
 mod limits;
+mod log;
 mod openapi;
 mod page;
 mod pictures;

@@ -18,14 +18,20 @@ use tokio::sync::oneshot;
 
 use crate::bench::{Answer, Bench, json_request};
 
-async fn token(bench: &Bench, owner: &str, scope: TokenScope) -> TokenSecret {
+pub(crate) async fn token(bench: &Bench, owner: &str, scope: TokenScope) -> TokenSecret {
     let secret = TokenSecret::generate().unwrap();
     let token = NewToken { secret: &secret, owner, name: None, scope, lifetime_ms: None };
     bench.store.create_token(&token).await.unwrap();
     secret
 }
 
-async fn send(bench: &Bench, token: &TokenSecret, method: Method, path: &str, body: Value) -> Answer {
+pub(crate) async fn send(
+    bench: &Bench,
+    token: &TokenSecret,
+    method: Method,
+    path: &str,
+    body: Value,
+) -> Answer {
     let mut request = json_request(method, path, body.to_string());
     let value = format!("Bearer {}", token.expose()).parse().unwrap();
     request.headers_mut().insert(header::AUTHORIZATION, value);
@@ -54,7 +60,9 @@ async fn once_a_token_exists_every_request_needs_one() {
             Request::get("/v1/sweeps").header(header::AUTHORIZATION, value).body(Body::empty()).unwrap();
         bench.send(request).await.problem(401, "unauthorized");
     }
+    assert!(bench.store.tokens().await.unwrap()[0].last_used.is_none());
     assert_eq!(send(&bench, &reader, Method::GET, "/v1/sweeps", json!({})).await.status, StatusCode::OK);
+    assert!(bench.store.tokens().await.unwrap()[0].last_used.is_some());
     bench.store.revoke_token(&reader.id()).await.unwrap();
     send(&bench, &reader, Method::GET, "/v1/sweeps", json!({})).await.problem(401, "unauthorized");
     // Without a valid token left, the service is closed, not open again.

@@ -535,3 +535,17 @@ async fn keep_disagreement(tx: &mut Transaction, key: &[u8], earlier_provenance:
     query(sql::queue::KEEP_DISAGREEMENT).bind(key).bind(earlier_provenance).execute(&mut *tx).await?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outcomes of `finish_work` (`store/sql/postgres/queue.sql`).
+    #[test]
+    fn a_result_is_stored_if_the_database_reports_it_done() {
+        assert!(is_done("done").expect("an outcome"));
+        assert!(!is_done("lost").expect("an outcome"));
+        let missing = is_done("missing 0a1b");
+        assert!(matches!(&missing, Err(StoreError::BlobMissing(blob)) if blob == "0a1b"), "{missing:?}");
+    }
+}

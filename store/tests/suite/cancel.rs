@@ -11,11 +11,16 @@ const CANCELLED: &str = r#"{"class":"cancelled"}"#;
 pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_renewal<E: Engine>() {
     let engine = E::new();
     let store = engine.open().await;
-    submit(&store, &sweep("s", [1, 2, 3])).await;
+    submit(&store, &sweep("s", [1, 2, 3, 4])).await;
     assert!(finish(&store, &claim(&store, "w").await).await);
+    let failed = claim(&store, "w").await;
+    assert!(store.finish_failed(&failed.lease, r#"{"class":"physical"}"#).await.unwrap());
     let running = claim(&store, "w").await;
     assert!(store.cancel_sweep("s").await.unwrap());
-    assert_eq!(states(&store, "s").await, [WorkState::Done, WorkState::Leased, WorkState::Cancelled]);
+    assert_eq!(
+        states(&store, "s").await,
+        [WorkState::Done, WorkState::Failed, WorkState::Leased, WorkState::Cancelled]
+    );
     let record = sweep_record(&store, "s").await;
     assert!(record.is_cancelled);
     assert_eq!(record.finished, None);
@@ -24,9 +29,10 @@ pub(crate) async fn queued_points_end_at_once_and_running_ones_at_their_next_ren
     assert_eq!(store.reserve(&running.lease, LEASE_MS, &[]).await.unwrap(), Renewal::CancelRequested);
     assert!(store.finish_cancelled(&running.lease, CANCELLED).await.unwrap());
     let record = sweep_record(&store, "s").await;
-    assert_eq!(record.counts, StateCounts { total: 3, done: 1, cancelled: 2, ..StateCounts::default() });
+    let counts = StateCounts { total: 4, done: 1, failed: 1, cancelled: 2, ..StateCounts::default() };
+    assert_eq!((record.counts, record.progress), (counts, 4.0), "a final point counts as one");
     assert!(record.finished.is_some());
-    assert_eq!(point_record(&store, "s", 2).await.error_json.as_deref(), Some(CANCELLED));
+    assert_eq!(point_record(&store, "s", 3).await.error_json.as_deref(), Some(CANCELLED));
     assert_eq!(claim_or_none(&store, "w").await, None);
     assert!(!store.cancel_sweep("t").await.unwrap());
 }

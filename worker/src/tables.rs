@@ -614,8 +614,10 @@ fn loads<H>(model: &Model, records: &Records<H>) -> Table {
     of_element(&TORQUE_MAX, &|element| element.torque.largest);
     of_element(&EQUIVALENT_STRESS_PEAK, &|element| element.equivalent_stress.value);
     of_element(&EQUIVALENT_STRESS_PEAK_TIME, &|element| element.equivalent_stress.time);
-    of_element(&YIELD_RATIO, &|element| or_null(element.yield_ratio));
-    of_element(&FATIGUE_RATE, &|element| or_null(element.fatigue_rate));
+    if elements.iter().any(|element| element.fatigue_rate.is_some()) {
+        of_element(&YIELD_RATIO, &|element| or_null(element.yield_ratio));
+        of_element(&FATIGUE_RATE, &|element| or_null(element.fatigue_rate));
+    }
     table
 }
 

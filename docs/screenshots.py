@@ -113,7 +113,7 @@ def main() -> None:
                 page.wait_for_load_state("networkidle")
                 for picture in page.locator(".plot:visible:not(.parallel)").all():
                     picture.locator(".main-svg").first.wait_for()
-                # What the page paints follows the axes by a frame.
+                # Canvases are painted a frame after the axes.
                 page.wait_for_timeout(500)
                 height = TALLER.get(name, LARGEST_HEIGHT)
                 save(page.screenshot(full_page=True), arguments.folder / f"{name}-{theme}.webp", height)

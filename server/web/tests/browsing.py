@@ -55,7 +55,7 @@ def parallel(page: Page) -> Locator:
     """The picture of parallel coordinates, once it is drawn."""
     picture = page.get_by_role("figure", name="Parallel coordinates")
     expect(picture.locator(".axis-title").first).to_be_visible()
-    # What comes later is drawn anew.
+    # Late answers draw the picture anew.
     page.wait_for_load_state("networkidle")
     picture.scroll_into_view_if_needed()
     return picture

@@ -1249,7 +1249,7 @@ def test_dots_of_many_points_are_read_and_opened(idle: str, opened: Opens) -> No
     label = picture.locator(".dot-label")
     expect(label).to_contain_text(f"mud density {density:.0f}")
     ordinal = int(str(label.locator("div").first.text_content()).removeprefix("point "))
-    # Where the axes are zoomed, the dots are painted anew.
+    # Zooming the axes paints the dots anew.
     source = "image => image.href.baseVal"
     before = dots.evaluate(source)
     drag(page, picture.locator(".nsewdrag"), (0.1, 0.1), (0.6, 0.6))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from drillsweep.report import Reported
 from drillsweep.table import Table
 from drillsweep.values import limits_text
 
@@ -43,7 +44,7 @@ class PointError:
     """Node at which it happened, 1 at the top."""
 
 
-class Point:
+class Point(Reported):
     """One point of a sweep: its state and its result."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
@@ -298,27 +299,9 @@ class Point:
         """Class of the motion by limits, and causes of the spectral lines.
 
         Args:
-            limits: Changes of the default limits, by column in the column's unit; None removes one.
+            limits: Changes of the service's limits, by column in the column's unit; None removes one.
         """
         return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
-
-    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
-        """Printable report of the point, two to four pages: a self-contained HTML document.
-
-        Args:
-            limits: Changes of the default limits, by column in the column's unit; None removes one.
-            units: Units of values and pictures.
-        """
-        return self._client.get_text(f"{self.path}/report", {"limits": limits_text(limits), "units": units})
-
-    def save_report(
-        self,
-        file: str | Path,
-        limits: Mapping[str, float | None] | None = None,
-        units: Literal["si", "field"] = "si",
-    ) -> Path:
-        """Writes the report to a file that ends in .html."""
-        return self._client.save(f"{self.path}/report", file, {"limits": limits_text(limits), "units": units})
 
     def cost(self) -> dict[str, Any]:
         """Cost of accuracy, if the scenario has a `cost_study`."""

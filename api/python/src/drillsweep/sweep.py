@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from drillsweep.design import Axis, Design, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
 from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
 from drillsweep.progress import ProgressBar, is_interactive
+from drillsweep.report import Reported
 from drillsweep.table import Table
 from drillsweep.values import limits_text, texts, to_json
 
@@ -85,7 +86,7 @@ class Plan:
         return cls(int(data["total"]), int(data["known"]), tuple(points), tuple(warnings), dict(data))
 
 
-class Sweep:
+class Sweep(Reported):
     """A sweep on the server, in the state of the last answer; `refresh` and `wait` update it."""
 
     def __init__(self, client: Client, data: Mapping[str, Any]) -> None:
@@ -269,27 +270,9 @@ class Sweep:
         """Operating window: parameters, class and finding of each point.
 
         Args:
-            limits: Changes of the default limits, by column in the column's unit; None removes one.
+            limits: Changes of the service's limits, by column in the column's unit; None removes one.
         """
         return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
-
-    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
-        """Printable report of the sweep, two to four pages: a self-contained HTML document.
-
-        Args:
-            limits: Changes of the default limits, by column in the column's unit; None removes one.
-            units: Units of values and pictures.
-        """
-        return self._client.get_text(f"{self.path}/report", {"limits": limits_text(limits), "units": units})
-
-    def save_report(
-        self,
-        file: str | Path,
-        limits: Mapping[str, float | None] | None = None,
-        units: Literal["si", "field"] = "si",
-    ) -> Path:
-        """Writes the report to a file that ends in .html."""
-        return self._client.save(f"{self.path}/report", file, {"limits": limits_text(limits), "units": units})
 
     def verification(self) -> Table:
         """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).
@@ -430,7 +413,7 @@ class Sweep:
             over: One or two of the sweep's parameters, over which points are neighbours; all of them unless given.
             resolution: Longest edge that is not divided, as a part of the range of a parameter.
             difference: For a column: smallest difference that is divided, as a part of the range of all values.
-            limits: For classes: changes of the default limits, by column in the column's unit; None removes one.
+            limits: For classes: changes of the service's limits, by column in the column's unit; None removes one.
             budget: Largest number of points to add.
             timeout: Longest wait for the points of one round [s]; None is without end.
 

@@ -41,6 +41,13 @@ pub(crate) fn values<'de, D: Deserializer<'de>>(format: D) -> Result<Option<Vec<
     list::<_, f64, _>(format, LIMITS.points_per_sweep, "values").map(Some)
 }
 
+/// Parameters of a refinement, two at most.
+pub(crate) fn pair<'de, D: Deserializer<'de>, Name: Deserialize<'de>>(
+    format: D,
+) -> Result<Vec<Name>, D::Error> {
+    list(format, 2, "parameters")
+}
+
 #[derive(serde::Deserialize)]
 struct Tags(#[serde(deserialize_with = "tags")] BTreeSet<String>);
 

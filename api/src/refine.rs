@@ -501,6 +501,10 @@ mod tests {
 
     #[test]
     fn fields_are_checked_before_points_are_read() {
+        // The rest of a list is not read.
+        let long = r#"{"by": "class", "over": ["a", "b", "c" and so on"#;
+        let refused = serde_json::from_str::<Refinement>(long).unwrap_err().to_string();
+        assert!(refused.starts_with("there may be at most 2 parameters"), "{refused}");
         let original = sweep();
         let pointers = |members: Value| {
             let refused = RefinedSamples::new(refinement(&members), &original, &OperatingLimits::default())

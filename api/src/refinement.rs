@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::AxisName;
+use crate::bounded;
 
 /// Largest budget of a request.
 pub(crate) const MOST_POINTS: u32 = 1_000;
@@ -15,7 +16,7 @@ pub struct Refinement {
     #[schema(example = "class")]
     pub by: String,
     /// One or two of the sweep's parameters, over which points are neighbours; absent means all, if they are one or two.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "bounded::pair")]
     #[schema(max_items = 2, example = json!(["flow_rate", "mud_density"]))]
     pub over: Vec<AxisName>,
     /// Longest edge that is not divided, as a part of the range of each of these parameters, 0.001 to 0.5; 0.02 unless given.

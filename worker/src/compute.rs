@@ -493,6 +493,8 @@ mod tests {
         let computed = |outputs| {
             let mut scenario = damped();
             scenario.duration = 0.02;
+            // A grade adds columns.
+            scenario.string.material.grade = Some(drillsweep_scenario::Grade::S135);
             scenario.ensemble = 2;
             scenario.recording.stability = true;
             scenario.recording.outputs = outputs;

@@ -81,9 +81,10 @@ def kind(schema: Schema) -> str:
     of = schema.get("type", "any")
     if of == "array":
         return f"list of {kind(schema['items'])}"
-    return " or ".join("absent" if part == "null" else part for part in ([of] if isinstance(of, str) else of)).replace(
-        "null", "absent"
-    )
+    if isinstance(of, str):
+        return of
+    words = {"null": "absent", "string": "text with unit"} if "number" in of else {"null": "absent"}
+    return " or ".join(words.get(part, part) for part in of)
 
 
 def alternative(schema: Schema) -> str:

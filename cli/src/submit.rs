@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use drillsweep_api::{
     AppendRequest, Axis, AxisName, Design, FieldProblem, ListedPoints, PlannedPoint, PlannedVerification,
     Refinement, RefinementState, Scale, Sweep, SweepRequest,
 };
-use drillsweep_quantity::unit;
+use drillsweep_quantity::{entry, unit};
 use drillsweep_scenario::ScenarioRequest;
 use serde::Deserialize;
 use serde_json::Value;
@@ -74,11 +74,11 @@ pub(crate) struct SubmitArguments {
 /// Points of a sweep.
 #[derive(Args)]
 pub(crate) struct DesignArguments {
-    /// Flow rates in m3/s: `0.01,0.04,0.06` or `from:to:count`.
-    #[arg(long, value_name = "M3_PER_S", value_parser = parse_axis)]
+    /// Flow rates in m3/s, or with their unit: `0.01,0.04,0.06` or `from:to:count`, such as `300gpm:700gpm:5`.
+    #[arg(long, value_name = "M3_PER_S", value_parser = |text: &str| parse_axis("flow_rate", text))]
     flow_rate: Option<Axis>,
-    /// Mud densities in kg/m3: `1200,1500` or `from:to:count`.
-    #[arg(long, value_name = "KG_PER_M3", value_parser = parse_axis)]
+    /// Mud densities in kg/m3, or with their unit: `1200,1500` or `from:to:count`, such as `10ppg:17ppg:4`.
+    #[arg(long, value_name = "KG_PER_M3", value_parser = |text: &str| parse_axis("mud_density", text))]
     mud_density: Option<Axis>,
     /// Any numeric field of the scenario as a further axis, such as `operation.rotation_speed_rpm=90,120` or
     /// `contact.stiffness=1e5:1e7:5:log`; with the designs `latin_hypercube` and `sobol`, `from:to` or `from:to:log`.
@@ -374,13 +374,21 @@ fn design(name: String) -> Result<Design, serde_json::Error> {
 /// `path=` and values as [`parse_axis`] reads them.
 fn parse_named_axis(text: &str) -> anyhow::Result<(String, Axis)> {
     let (path, values) = text.split_once('=').with_context(|| format!("write PATH=VALUES, got {text:?}"))?;
-    Ok((path.trim().to_owned(), parse_axis(values)?))
+    let path = path.trim();
+    Ok((path.to_owned(), parse_axis(path, values)?))
 }
 
-/// `a,b,c`, `from:to:count`, `from:to`, the latter two with `:log` for equal ratios.
-fn parse_axis(text: &str) -> anyhow::Result<Axis> {
+/// `a,b,c`, `from:to:count`, `from:to`, the latter two with `:log` for equal ratios. A value of a quantity may have its unit.
+fn parse_axis(path: &str, text: &str) -> anyhow::Result<Axis> {
+    let units = drillsweep_quantity::of(path).and_then(|quantity| quantity.units);
     let number = |text: &str| -> anyhow::Result<f64> {
-        text.trim().parse().with_context(|| format!("{text:?} is not a number"))
+        match (text.trim().parse(), units) {
+            (Ok(value), _) => Ok(value),
+            (Err(_), Some(units)) => {
+                entry::read(text, units).map_err(|error| anyhow!("{text:?} must be {error}"))
+            }
+            (Err(_), None) => bail!("{text:?} is not a number"),
+        }
     };
     let (text, scale) = match text.strip_suffix(":log") {
         Some(range) => (range, Scale::Log),
@@ -406,6 +414,24 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+
+    #[test]
+    fn values_of_an_axis_have_units_of_its_quantity() {
+        let range = |from: f64, to: f64| Axis::Range { from, to, count: 5, scale: Scale::Linear };
+        let gpm = |number: f64| number * 0.003_785_411_784 / 60.0;
+        let flow = parse_axis("flow_rate", "300gpm:700 gpm:5").unwrap();
+        assert!(
+            matches!(flow, Axis::Range { from, .. } if (from / gpm(300.0) - 1.0).abs() < 1e-15),
+            "{flow:?}"
+        );
+        let speed = parse_named_axis("operation.rotation_speed_rpm=1rev/s:2rev/s:5").unwrap();
+        assert_eq!(speed, ("operation.rotation_speed_rpm".to_owned(), range(60.0, 120.0)));
+        let widths = parse_named_axis("well.hole_diameter=8 1/2 in, 0.25").unwrap().1;
+        assert_eq!(widths, Axis::Values { values: vec![0.2159, 0.25] });
+        let message = parse_axis("mud_density", "10ppg,500gpm").unwrap_err().to_string();
+        assert!(message.contains("\"500gpm\"") && message.contains("unit of volume flow rate"), "{message}");
+        assert!(parse_axis("no.such.field", "10ppg").unwrap_err().to_string().contains("not a number"));
+    }
 
     #[test]
     fn a_dry_run_is_a_table_with_estimates() {

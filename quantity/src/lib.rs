@@ -8,6 +8,7 @@ mod all;
 mod classes;
 pub mod columns;
 mod definition;
+pub mod entry;
 mod export;
 mod name;
 mod parameters;

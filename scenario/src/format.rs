@@ -2,7 +2,7 @@
 
 use serde::de::{DeserializeOwned, Deserializer, IgnoredAny};
 
-use crate::strict::Strict;
+use crate::strict::read_strictly;
 use crate::{Problem, Scenario};
 
 impl Scenario {
@@ -69,7 +69,7 @@ pub(super) fn not_json(error: &serde_json::Error) -> Problem {
 fn read<'de, T: DeserializeOwned>(format: impl Deserializer<'de>) -> Result<T, Problem> {
     let mut track = serde_path_to_error::Track::new();
     let tracked = serde_path_to_error::Deserializer::new(format, &mut track);
-    T::deserialize(Strict(tracked)).map_err(|error| {
+    read_strictly(tracked).map_err(|error| {
         let message = error.to_string();
         Problem::from_serde(track.path().to_string(), without_place(&message))
     })
@@ -139,7 +139,57 @@ mod tests {
         let problem = Scenario::from_toml(&toml).unwrap_err();
         assert_eq!(problem.path, "string.material.youngs_modulus");
         assert_eq!(problem.got, "\"steel\"");
-        assert_eq!(problem.message, "must be a number");
+        assert!(
+            problem.message.starts_with("must be a number, or a text of a number with one of the units Pa, ")
+        );
+    }
+
+    /// Writes each number of a quantity as a text with the unit in which it is kept, and counts them.
+    fn written_with_units(value: &mut serde_json::Value, path: &str) -> usize {
+        use serde_json::Value;
+        match value {
+            Value::Object(members) => {
+                let of = |(name, value): (&String, &mut Value)| {
+                    written_with_units(value, &format!("{path}.{name}"))
+                };
+                members.iter_mut().map(of).sum()
+            }
+            Value::Array(entries) => entries.iter_mut().map(|entry| written_with_units(entry, path)).sum(),
+            Value::Number(number) => {
+                let Some(unit) = drillsweep_quantity::unit(path.trim_start_matches('.')) else { return 0 };
+                *value = format!("{number} {unit}").into();
+                1
+            }
+            _ => 0,
+        }
+    }
+
+    #[test]
+    fn every_number_with_a_unit_may_be_a_text() {
+        for (name, _) in crate::PRESETS {
+            let scenario = preset(name).unwrap();
+            let mut written = scenario.to_value();
+            let count = written_with_units(&mut written, "");
+            assert!(count > 25, "{name}: {count}");
+            assert_eq!(Scenario::from_json(&written.to_string()).as_ref(), Ok(&scenario), "{name}");
+        }
+        let field = paper().to_toml().replace("hole_diameter = 0.2159", "hole_diameter = \"8 1/2 in\"");
+        assert!(field.contains("8 1/2 in"));
+        assert_eq!(Scenario::from_toml(&field), Ok(paper()));
+    }
+
+    #[test]
+    fn a_unit_of_another_dimension_is_refused_with_those_that_fit() {
+        let problem = paper().with("mud.density", "500 gpm".into()).unwrap_err();
+        assert_eq!((problem.path.as_str(), problem.got.as_str()), ("mud.density", "\"500 gpm\""));
+        assert_eq!(
+            problem.message,
+            "must be a number with one of the units kg/m3, g/cm3, ppg, lb/ft3; `gpm` is a unit of volume flow rate"
+        );
+        let changed =
+            paper().with("mud", serde_json::json!({"flow_rate": "1893 l/min", "density": "1.2 sg"})).unwrap();
+        let mud = changed.mud.unwrap();
+        assert_eq!((mud.flow_rate, mud.density), (0.031_55, 1_200.0));
     }
 
     #[test]

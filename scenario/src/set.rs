@@ -238,7 +238,11 @@ mod tests {
     fn wrong_types_name_the_expected_one() {
         let problem = paper().with("mud.flow_rate", json!("fast")).unwrap_err();
         assert_eq!(problem.path, "mud.flow_rate");
-        assert_eq!(problem.to_string(), "mud.flow_rate: must be a number (got \"fast\")");
+        assert_eq!(
+            problem.to_string(),
+            "mud.flow_rate: must be a number, or a text of a number with one of the units m3/s, m3/min, m3/h, l/s, l/min, \
+             gpm, bbl/min (got \"fast\")"
+        );
         let problem = paper().with("mud.regime", json!("turbulent")).unwrap_err();
         assert_eq!(problem.path, "mud.regime");
         assert!(problem.message.contains("`auto` or `laminar`"), "{problem}");

@@ -1,10 +1,11 @@
-//! Reading objects as objects, names as names and whole numbers as integers.
+//! Reading objects as objects, names as names, whole numbers as integers, and numbers with their units as texts.
 //!
 //! Serde also takes a list for a struct (its entries for the fields, in their order) and `{"grid": null}` for the name `"grid"`. No schema
 //! describes either, and a list comes to mean other fields as soon as one is added.
 
 use std::fmt;
 
+use drillsweep_quantity::{Units, entry, of};
 use serde::Deserialize;
 use serde::de::value::StrDeserializer;
 use serde::de::{
@@ -14,16 +15,39 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 
 /// Reads a type out of a format that describes itself, such as JSON or TOML: its structs out of objects only, its names out of text
-/// only.
+/// only. A number of a quantity of the vocabulary may be a text with its unit (`"10.5 ppg"`, [`drillsweep_quantity::entry`]).
 ///
 /// # Errors
-/// The type's own problems, and a list in place of a struct or an object in place of a name.
+/// The type's own problems, a list in place of a struct or an object in place of a name, and a unit that does not fit.
 pub fn read_strictly<'de, T: Deserialize<'de>, D: Deserializer<'de>>(format: D) -> Result<T, D::Error> {
-    T::deserialize(Strict(format))
+    T::deserialize(Strict(format, Path(None)))
 }
 
-/// A deserializer, visitor, seed or access of serde's that reads structs and names strictly.
-pub(super) struct Strict<T>(pub(super) T);
+/// A deserializer, visitor, seed or access of serde's that reads structs, names and numbers strictly, with the path of the value.
+struct Strict<'p, T>(T, Path<'p>);
+
+/// Names of the members that lead to a value, without indices of lists.
+#[derive(Clone, Copy)]
+struct Path<'p>(Option<&'p Member<'p>>);
+
+struct Member<'p> {
+    name: &'p str,
+    above: Path<'p>,
+}
+
+impl Path<'_> {
+    /// Units of the number at this path: of a field of a scenario, wherever that is in the document, or of an axis or a column of
+    /// this name.
+    fn units(self) -> Option<&'static Units> {
+        let members = std::iter::successors(self.0, |member| member.above.0);
+        let mut names: Vec<&str> = members.map(|member| member.name).collect();
+        names.reverse();
+        let parts =
+            (0..names.len()).flat_map(|start| (start..names.len()).rev().map(move |end| (start, end)));
+        let quantity = parts.map(|(start, end)| names[start..=end].join(".")).find_map(|path| of(&path));
+        quantity?.units
+    }
+}
 
 /// Declares methods of a deserializer that read an integer.
 macro_rules! read_whole {
@@ -34,15 +58,15 @@ macro_rules! read_whole {
     )*};
 }
 
-impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
+impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<'_, D> {
     type Error = D::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        self.0.deserialize_any(Strict(visitor))
+        self.0.deserialize_any(Strict(visitor, self.1))
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        self.0.deserialize_option(Strict(visitor))
+        self.0.deserialize_option(Strict(visitor, self.1))
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
@@ -50,7 +74,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
         name: &'static str,
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_newtype_struct(name, Strict(visitor))
+        self.0.deserialize_newtype_struct(name, Strict(visitor, self.1))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -59,7 +83,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_any(Struct(visitor))
+        self.0.deserialize_any(Struct(visitor, self.1))
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -68,7 +92,11 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_any(Enum(visitor))
+        self.0.deserialize_any(Enum(visitor, self.1))
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
+        self.0.deserialize_any(Number(visitor, self.1))
     }
 
     fn is_human_readable(&self) -> bool {
@@ -81,7 +109,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Strict<D> {
     }
 
     forward_to_deserialize_any! {
-        bool f32 f64 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
+        bool f32 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
         identifier ignored_any
     }
 }
@@ -95,7 +123,7 @@ macro_rules! hand_on {
     )*};
 }
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<'_, V> {
     type Value = V::Value;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -116,19 +144,19 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Strict<V> {
     }
 
     fn visit_some<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
-        self.0.visit_some(Strict(format))
+        self.0.visit_some(Strict(format, self.1))
     }
 
     fn visit_newtype_struct<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
-        self.0.visit_newtype_struct(Strict(format))
+        self.0.visit_newtype_struct(Strict(format, self.1))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<V::Value, A::Error> {
-        self.0.visit_seq(Strict(entries))
+        self.0.visit_seq(Strict(entries, self.1))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
-        self.0.visit_map(Strict(members))
+        self.0.visit_map(Members::new(members, self.1))
     }
 }
 
@@ -171,9 +199,9 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Whole<V> {
 }
 
 /// The visitor of a struct, which takes objects. All else is refused as of a wrong type, in the visitor's own words.
-struct Struct<V>(V);
+struct Struct<'p, V>(V, Path<'p>);
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Struct<V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for Struct<'_, V> {
     type Value = V::Value;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -181,14 +209,14 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Struct<V> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
-        self.0.visit_map(Strict(members))
+        self.0.visit_map(Members::new(members, self.1))
     }
 }
 
 /// The visitor of an enum, which takes the name of a variant, or an object whose one member is named so and holds the variant's content.
-struct Enum<V>(V);
+struct Enum<'p, V>(V, Path<'p>);
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Enum<V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for Enum<'_, V> {
     type Value = V::Value;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -200,23 +228,23 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Enum<V> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
-        self.0.visit_enum(Variants(members))
+        self.0.visit_enum(Variants(Members::new(members, self.1)))
     }
 }
 
-impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Strict<S> {
+impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Strict<'_, S> {
     type Value = S::Value;
 
     fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<S::Value, D::Error> {
-        self.0.deserialize(Strict(format))
+        self.0.deserialize(Strict(format, self.1))
     }
 }
 
-impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Strict<A> {
+impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Strict<'_, A> {
     type Error = A::Error;
 
     fn next_element_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, A::Error> {
-        self.0.next_element_seed(Strict(seed))
+        self.0.next_element_seed(Strict(seed, self.1))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -224,26 +252,94 @@ impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Strict<A> {
     }
 }
 
-impl<'de, A: MapAccess<'de>> MapAccess<'de> for Strict<A> {
+/// Members of an object, each read with its name.
+struct Members<'p, A> {
+    members: A,
+    path: Path<'p>,
+    /// Name of the member whose value is read next.
+    name: String,
+}
+
+impl<'p, A> Members<'p, A> {
+    fn new(members: A, path: Path<'p>) -> Self {
+        Members { members, path, name: String::new() }
+    }
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for Members<'_, A> {
     type Error = A::Error;
 
     fn next_key_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<Option<S::Value>, A::Error> {
-        self.0.next_key_seed(seed)
+        self.members.next_key_seed(Named { seed, name: &mut self.name })
     }
 
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, A::Error> {
-        self.0.next_value_seed(Strict(seed))
+        let member = Member { name: &self.name, above: self.path };
+        self.members.next_value_seed(Strict(seed, Path(Some(&member))))
     }
 
     fn size_hint(&self) -> Option<usize> {
-        self.0.size_hint()
+        self.members.size_hint()
+    }
+}
+
+/// The seed of a member's name, which keeps it.
+struct Named<'n, S> {
+    seed: S,
+    name: &'n mut String,
+}
+
+impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Named<'_, S> {
+    type Value = S::Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<S::Value, D::Error> {
+        *self.name = String::deserialize(format)?;
+        self.seed.deserialize(StrDeserializer::new(self.name))
+    }
+}
+
+/// The visitor of a number, which also takes a text with the unit of its quantity.
+struct Number<'p, V>(V, Path<'p>);
+
+impl<'de, V: Visitor<'de>> Visitor<'de> for Number<'_, V> {
+    type Value = V::Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.expecting(formatter)
+    }
+
+    hand_on! {
+        visit_bool(bool) visit_i64(i64) visit_i128(i128) visit_u64(u64) visit_u128(u128) visit_f64(f64) visit_char(char)
+        visit_bytes(&[u8]) visit_borrowed_bytes(&'de [u8]) visit_byte_buf(Vec<u8>)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<V::Value, E> {
+        match self.1.units() {
+            None => self.0.visit_str(text),
+            Some(units) => match entry::read(text, units) {
+                Ok(value) => self.0.visit_f64(value),
+                Err(error) => Err(E::invalid_value(Unexpected::Str(text), &error.to_string().as_str())),
+            },
+        }
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<V::Value, E> {
+        self.0.visit_unit()
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<V::Value, A::Error> {
+        self.0.visit_seq(entries)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> Result<V::Value, A::Error> {
+        self.0.visit_map(members)
     }
 }
 
 /// An object that stands for a variant with content.
-struct Variants<A>(A);
+struct Variants<'p, A>(Members<'p, A>);
 
-impl<'de, A: MapAccess<'de>> EnumAccess<'de> for Variants<A> {
+impl<'de, A: MapAccess<'de>> EnumAccess<'de> for Variants<'_, A> {
     type Error = A::Error;
     type Variant = Self;
 
@@ -255,7 +351,7 @@ impl<'de, A: MapAccess<'de>> EnumAccess<'de> for Variants<A> {
     }
 }
 
-impl<'de, A: MapAccess<'de>> Variants<A> {
+impl<'de, A: MapAccess<'de>> Variants<'_, A> {
     /// The content, as the only member.
     fn content<S: DeserializeSeed<'de>>(mut self, seed: S) -> Result<S::Value, A::Error> {
         let content = self.0.next_value_seed(seed)?;
@@ -266,7 +362,7 @@ impl<'de, A: MapAccess<'de>> Variants<A> {
     }
 }
 
-impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Variants<A> {
+impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Variants<'_, A> {
     type Error = A::Error;
 
     fn unit_variant(self) -> Result<(), A::Error> {
@@ -274,11 +370,11 @@ impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Variants<A> {
     }
 
     fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, A::Error> {
-        self.content(Strict(seed))
+        self.content(seed)
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, A::Error> {
-        self.content(Any(Strict(visitor)))
+        self.content(Any(visitor))
     }
 
     fn struct_variant<V: Visitor<'de>>(
@@ -286,11 +382,22 @@ impl<'de, A: MapAccess<'de>> VariantAccess<'de> for Variants<A> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, A::Error> {
-        self.content(Any(Struct(visitor)))
+        self.content(Object(visitor))
     }
 }
 
-/// Lets a visitor see what there is.
+/// The seed of a variant's object.
+struct Object<V>(V);
+
+impl<'de, V: Visitor<'de>> DeserializeSeed<'de> for Object<V> {
+    type Value = V::Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, format: D) -> Result<V::Value, D::Error> {
+        format.deserialize_struct("", &[], self.0)
+    }
+}
+
+/// The seed of any value, for a visitor.
 struct Any<V>(V);
 
 impl<'de, V: Visitor<'de>> DeserializeSeed<'de> for Any<V> {

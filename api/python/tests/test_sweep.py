@@ -8,6 +8,7 @@ import socket
 import threading
 import zipfile
 from datetime import datetime, timedelta, timezone
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,31 @@ def test_table_has_a_row_a_point_in_every_form(sweep: Sweep, tmp_path: Path) -> 
     parquet = polars.read_parquet(sweep.save_table(tmp_path / "table.parquet"))
     for other in (csv["orbit_radius_rms_49"].tolist(), parquet["orbit_radius_rms_49"].to_list()):
         assert other == frame["orbit_radius_rms_49"].tolist() == table.to_polars()["orbit_radius_rms_49"].to_list()
+
+
+def test_values_with_units_make_the_points_of_those_in_si(client: Client) -> None:
+    # A US gallon is 231 cubic inches, a pound 0.45359237 kg.
+    gallon, pound = 231 * Fraction("0.0254") ** 3, Fraction("0.45359237")
+    flows, density = [float(number * gallon / 60) for number in (300, 500)], float(Fraction("10.5") * pound / gallon)
+    si = client.plan("paper-200m", set={"mud.density": density}, axes={"flow_rate": flows})
+    field = client.plan("paper-200m", set={"mud.density": "10.5 ppg"}, axes={"flow_rate": ["300 gpm", "500 gpm"]})
+    ends = client.plan(
+        "paper-200m", set={"mud": {"density": "10.5ppg"}}, axes={"flow_rate": Range("300gpm", "500gpm", 2)}
+    )
+    listed = client.plan("paper-200m", set={"mud.density": "10.5 ppg"}, points=[{"flow_rate": "300 gpm"}])
+    assert [point.key for point in field.points] == [point.key for point in si.points]
+    assert [point.parameters for point in ends.points] == [
+        {"flow_rate": flow, "mud_density": density} for flow in flows
+    ]
+    assert listed.points[0].key == si.points[0].key
+    with pytest.raises(
+        InvalidRequest, match="kg/m3, g/cm3, ppg, lb/ft3; `gpm` is a unit of volume flow rate"
+    ) as refused:
+        client.plan("paper-200m", set={"mud.density": "500 gpm"})
+    assert [error.pointer for error in refused.value.errors] == ["/set/mud.density"]
+    with pytest.raises(Problem, match=r"m3/s, .* gpm") as malformed:
+        client.plan("paper-200m", axes={"flow_rate": [0.01, "0.02"]})
+    assert [error.pointer for error in malformed.value.errors] == ["/axes/flow_rate/values/1"]
 
 
 def test_a_sample_is_verified_by_the_reference(client: Client) -> None:

@@ -20,7 +20,23 @@ pub(crate) fn json(document: &OpenApi) -> String {
     let mut document = json!(document);
     vocabulary::describe(&mut document);
     bound_members(&mut document);
+    allow_units(&mut document);
     format!("{document:#}\n")
+}
+
+/// Allows texts with units as values of swept parameters.
+fn allow_units(document: &mut Value) {
+    let schemas = &mut document["components"]["schemas"];
+    let ends = ["AxisRange", "AxisInterval"]
+        .map(|axis| ["from", "to"].map(|end| format!("/{axis}/properties/{end}")));
+    let points = ["SweepRequest", "AppendRequest"]
+        .map(|request| format!("/{request}/properties/points/items/additionalProperties"));
+    let values = "/AxisValues/properties/values/items".to_owned();
+    for pointer in ends.into_iter().flatten().chain(points).chain([values]) {
+        if let Some(schema) = schemas.pointer_mut(&pointer) {
+            vocabulary::allow_text(schema);
+        }
+    }
 }
 
 /// Adds limits on numbers of members, which annotations cannot express.
@@ -45,7 +61,8 @@ fn bound_members(document: &mut Value) {
         title = "drillsweep",
         version = "1",
         description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
-            SI units throughout; a field in another unit says so in its name.",
+            SI units throughout; a field in another unit says so in its name. In requests a number of a scenario, of a change \
+            or of an axis may be a text with its unit, such as `\"10.5 ppg\"`, `\"500 gpm\"` or `\"12 1/4 in\"`; answers have numbers.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     components(schemas(

@@ -12,7 +12,7 @@ const UNIT: &str = "x-unit";
 
 const SCHEMAS: &str = "#/components/schemas/";
 
-/// Adds the unit of each numeric field of a scenario (`x-unit`), and the columns of each table to its route.
+/// Adds the unit of each numeric field of a scenario (`x-unit`), which may be a text with a unit, and the columns of each table to its route.
 pub(crate) fn describe(document: &mut Value) {
     if let Some(schemas) = document["components"]["schemas"].as_object_mut() {
         name_units(schemas);
@@ -65,6 +65,7 @@ fn name_unit(schema: &mut Value, path: &str, waiting: &mut Vec<(String, String)>
     if is_number(schema) {
         if let Some(unit) = drillsweep_quantity::unit(path) {
             schema[UNIT] = json!(unit);
+            allow_text(schema);
         }
         return;
     }
@@ -80,6 +81,20 @@ fn name_unit(schema: &mut Value, path: &str, waiting: &mut Vec<(String, String)>
     if let Some(items) = schema.get_mut("items") {
         name_unit(items, path, waiting);
     }
+}
+
+/// A number, decimal or with a fraction, and a unit.
+const WITH_UNIT: &str =
+    r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?[-\s]*(\d+/\d+)?\s*(1/)?[^\s\d.,][^,]*$";
+
+/// Allows a text with a unit in place of a number.
+pub(super) fn allow_text(schema: &mut Value) {
+    let kinds = match schema["type"].take() {
+        Value::Array(kinds) => kinds,
+        kind => vec![kind],
+    };
+    schema["type"] = kinds.into_iter().chain([json!("string")]).collect();
+    schema["pattern"] = json!(WITH_UNIT);
 }
 
 fn is_number(schema: &Value) -> bool {

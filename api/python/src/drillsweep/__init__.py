@@ -16,7 +16,7 @@ The logger `drillsweep` logs submissions, waits and retries at the level INFO.
 from importlib.metadata import version
 
 from drillsweep.client import Client
-from drillsweep.design import Axis, Design, Range
+from drillsweep.design import Axis, Design, Range, Value
 from drillsweep.point import Point, PointError
 from drillsweep.problem import (
     Conflict,
@@ -76,6 +76,7 @@ __all__ = [
     "Unavailable",
     "Unit",
     "UnsupportedServer",
+    "Value",
     "__version__",
     "quantity",
 ]

@@ -9,13 +9,13 @@ import uuid
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, SupportsFloat
+from typing import Any
 from urllib.parse import quote
 
 import httpx
 from httpx_sse import EventSource
 
-from drillsweep.design import Axis, Design, design_to_json
+from drillsweep.design import Axis, Design, Value, design_to_json
 from drillsweep.point import FailureClass, Point
 from drillsweep.problem import PROBLEM_PREFIX, ConnectionError, Problem, UnsupportedServer, problem, warn
 from drillsweep.quantity import Quantity, read_quantities
@@ -80,7 +80,7 @@ class Client:
         samples: int | None = None,
         seed: int | None = None,
         skip: int | None = None,
-        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
+        points: Iterable[Mapping[str, Value]] | None = None,
         outputs: Outputs | None = None,
         verify: float | None = None,
         name: str | None = None,
@@ -170,7 +170,7 @@ class Client:
         samples: int | None = None,
         seed: int | None = None,
         skip: int | None = None,
-        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
+        points: Iterable[Mapping[str, Value]] | None = None,
         outputs: Outputs | None = None,
         verify: float | None = None,
     ) -> Plan:

@@ -6,13 +6,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, SupportsFloat, TypedDict
 
-from drillsweep.values import inside, number, to_json
+from drillsweep.values import entry, inside, to_json
 
 Design = Literal["grid", "zip", "list", "latin_hypercube", "sobol"]
 """Ways of making points from axes."""
 
 Scale = Literal["linear", "log"]
 """Spacing of the values of a range."""
+
+
+Value = SupportsFloat | str
+"""A value of a parameter: a number in the unit of its field, or a text with its unit, such as `"500 gpm"`."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +26,8 @@ class Range:
     Without a count it is the interval from which the designs `latin_hypercube` and `sobol` draw.
     """
 
-    start: float
-    stop: float
+    start: float | str
+    stop: float | str
     count: int | None = None
     scale: Scale = "linear"
 
@@ -36,10 +40,10 @@ class Range:
 class AxisValues(TypedDict):
     """Listed values, as the service takes them."""
 
-    values: Sequence[float]
+    values: Sequence[float | str]
 
 
-_Ends = TypedDict("_Ends", {"from": float, "to": float})
+_Ends = TypedDict("_Ends", {"from": float | str, "to": float | str})
 
 
 class AxisRange(_Ends, total=False):
@@ -49,8 +53,8 @@ class AxisRange(_Ends, total=False):
     scale: Scale
 
 
-Axis = Range | AxisValues | AxisRange | Iterable[SupportsFloat]
-"""The values of one parameter: a range, any list or array of numbers, or the service's own JSON."""
+Axis = Range | AxisValues | AxisRange | Iterable[Value]
+"""The values of one parameter: a range, any list or array of values, or the service's own JSON."""
 
 
 def axes_to_json(axes: Mapping[str, Axis] | None) -> dict[str, Any] | None:
@@ -68,7 +72,7 @@ def design_to_json(
     samples: int | None,
     seed: int | None,
     skip: int | None,
-    points: Iterable[Mapping[str, SupportsFloat]] | None,
+    points: Iterable[Mapping[str, Value]] | None,
 ) -> dict[str, Any]:
     """A design as the service takes it; None stands for the service's default.
 
@@ -84,16 +88,16 @@ def design_to_json(
 
 def _axis_to_json(axis: Axis, pointer: str) -> dict[str, Any]:
     if isinstance(axis, Range):
-        ends = {"from": number(axis.start, inside(pointer, "from")), "to": number(axis.stop, inside(pointer, "to"))}
+        ends = {"from": entry(axis.start, inside(pointer, "from")), "to": entry(axis.stop, inside(pointer, "to"))}
         return axis.to_json() | ends
     if isinstance(axis, Mapping):
         return dict(to_json(axis, pointer))
     if isinstance(axis, str | bytes) or not isinstance(axis, Iterable):
         raise TypeError(f"{pointer}: must be a Range, or a list or an array of numbers (got {axis!r})")
     listed = inside(pointer, "values")
-    return {"values": [number(value, inside(listed, index)) for index, value in enumerate(axis)]}
+    return {"values": [entry(value, inside(listed, index)) for index, value in enumerate(axis)]}
 
 
-def _point_to_json(point: Mapping[str, SupportsFloat], index: int) -> dict[str, float]:
+def _point_to_json(point: Mapping[str, Value], index: int) -> dict[str, float | str]:
     pointer = inside("/points", index)
-    return {name: number(value, inside(pointer, name)) for name, value in point.items()}
+    return {name: entry(value, inside(pointer, name)) for name, value in point.items()}

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, Any
 
-from drillsweep.design import Axis, Design, axes_to_json, design_to_json
+from drillsweep.design import Axis, Design, Value, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
 from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
 from drillsweep.progress import ProgressBar, is_interactive
@@ -381,7 +381,7 @@ class Sweep(Reported):
         samples: int | None = None,
         seed: int | None = None,
         skip: int | None = None,
-        points: Iterable[Mapping[str, SupportsFloat]] | None = None,
+        points: Iterable[Mapping[str, Value]] | None = None,
     ) -> Sweep:
         """Adds points over its own parameters, by any design; those that it has already are skipped.
 

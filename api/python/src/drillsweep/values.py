@@ -50,6 +50,16 @@ def number(value: Any, pointer: str) -> float:
     return converted
 
 
+def entry(value: Any, pointer: str) -> float | str:
+    """A finite number, or a text of a number with its unit, which the service reads.
+
+    Raises:
+        ValueError: The number is NaN or infinite.
+        TypeError: The value is neither.
+    """
+    return value if isinstance(value, str) else number(value, pointer)
+
+
 def texts(values: Iterable[str], pointer: str) -> list[str]:
     """A list of texts; a single text is none.
 

@@ -1,0 +1,496 @@
+//! Numbers with their units as people write them, such as `10.5 ppg`, `12 1/4 in` or `2.5 klbf`, read exactly: the result is the double
+//! nearest to the number in the unit in which its quantity is kept, so that `215.9 mm` and `8 1/2 in` are 0.2159 m to the last bit.
+
+use bigdecimal::{BigDecimal, Zero};
+use thiserror::Error;
+
+use crate::units::Units;
+
+/// Longest text of an entry \[bytes\].
+const LONGEST: usize = 60;
+
+/// Reads a number with its unit, in the unit in which its quantity is kept.
+///
+/// # Errors
+/// A text without a number or without a unit, or one of another dimension.
+pub fn read(text: &str, units: &Units) -> Result<f64, EntryError> {
+    let malformed = || EntryError::Number { fits: fitting(units) };
+    if text.len() > LONGEST {
+        return Err(malformed());
+    }
+    let (number, symbol) = number(text.trim()).ok_or_else(malformed)?;
+    if symbol.is_empty() {
+        return Err(malformed());
+    }
+    let family = Family::of(units);
+    let Some(unit) = family.and_then(|family| family.find(symbol)) else {
+        let dimension = FAMILIES.iter().find_map(|family| family.find(symbol).map(|_| family.dimension));
+        return Err(EntryError::Unit { symbol: symbol.to_owned(), dimension, fits: fitting(units) });
+    };
+    let kept = family.and_then(|family| family.find(units.kept)).ok_or_else(malformed)?;
+    let Fraction(numerator, denominator) = number * unit.size() / kept.size();
+    // A double is nearest to the exact quotient unless 40 digits of that are those of a middle between two.
+    let value: f64 =
+        (numerator / denominator).with_prec(40).to_scientific_notation().parse().map_err(|_| malformed())?;
+    if value.is_finite() { Ok(value) } else { Err(EntryError::Size) }
+}
+
+/// Reason why a text is no number of a quantity: the valid texts, as in "must be ...".
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum EntryError {
+    /// It has no number, or no unit.
+    #[error("a number, or a text of a number with one of the units {fits}")]
+    Number {
+        /// Units of the quantity.
+        fits: String,
+    },
+    /// It is beyond the largest double.
+    #[error("a finite number")]
+    Size,
+    /// Its unit is unknown, or of another dimension.
+    #[error("a number with one of the units {fits}{}", of_other(symbol, *dimension))]
+    Unit {
+        /// The unit as it was written.
+        symbol: String,
+        /// The dimension that has this unit.
+        dimension: Option<&'static str>,
+        /// Units of the quantity.
+        fits: String,
+    },
+}
+
+fn of_other(symbol: &str, dimension: Option<&str>) -> String {
+    dimension.map_or_else(
+        || format!("; `{symbol}` is unknown"),
+        |dimension| format!("; `{symbol}` is a unit of {dimension}"),
+    )
+}
+
+/// Symbols of the units in which a quantity may be written, the one in which it is kept first.
+fn symbols(units: &Units) -> Vec<&'static str> {
+    let others = Family::of(units).map_or(&[][..], |family| family.units).iter().map(|unit| unit.symbols[0]);
+    [units.kept].into_iter().chain(others.filter(|symbol| *symbol != units.kept)).collect()
+}
+
+fn fitting(units: &Units) -> String {
+    symbols(units).join(", ")
+}
+
+/// An exact number: numerator and denominator.
+struct Fraction(BigDecimal, BigDecimal);
+
+impl std::ops::Mul for Fraction {
+    type Output = Fraction;
+
+    fn mul(self, other: Fraction) -> Fraction {
+        Fraction(self.0 * other.0, self.1 * other.1)
+    }
+}
+
+impl std::ops::Div for Fraction {
+    type Output = Fraction;
+
+    fn div(self, other: Fraction) -> Fraction {
+        Fraction(self.0 * other.1, self.1 * other.0)
+    }
+}
+
+/// The number at the start of a text, decimal or with a fraction (`12 1/4`), and the rest without blanks around it.
+fn number(text: &str) -> Option<(Fraction, &str)> {
+    let (decimal, rest) = text.split_at(decimal_length(text));
+    let one = || BigDecimal::from(1);
+    let whole: BigDecimal = decimal.parse().ok()?;
+    if let Some((numerator, denominator, rest)) = fraction(rest.trim_start_matches([' ', '-'])) {
+        if !decimal.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        return Some((Fraction(whole * &denominator + numerator, denominator), rest));
+    }
+    // A fraction without a whole number before it: `3/4 in`.
+    if let Some((numerator, denominator, rest)) = fraction(text) {
+        return Some((Fraction(numerator, denominator), rest));
+    }
+    Some((Fraction(whole, one()), rest.trim()))
+}
+
+/// Digits over digits at the start of a text, and the rest.
+fn fraction(text: &str) -> Option<(BigDecimal, BigDecimal, &str)> {
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let (numerator, rest) = text.split_at(digits(text));
+    let rest = rest.strip_prefix('/')?;
+    let (denominator, rest) = rest.split_at(digits(rest));
+    let (numerator, denominator): (BigDecimal, BigDecimal) =
+        (numerator.parse().ok()?, denominator.parse().ok()?);
+    (!denominator.is_zero()).then_some((numerator, denominator, rest.trim()))
+}
+
+/// Length of the decimal number at the start of a text: sign, digits, point, and an exponent of at most three digits.
+fn decimal_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let signed = |from: usize| from + usize::from(matches!(bytes.get(from), Some(b'+' | b'-')));
+    let mut end = signed(0);
+    end += digits(end);
+    if bytes.get(end) == Some(&b'.') {
+        end += 1 + digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let start = signed(end + 1);
+        let length = digits(start);
+        if (1..=3).contains(&length) {
+            return start + length;
+        }
+    }
+    end
+}
+
+/// A unit: its symbols, the usual one first, and its size in the first unit of its family as an exact quotient.
+struct Entry {
+    symbols: &'static [&'static str],
+    size: (&'static str, &'static str),
+}
+
+impl Entry {
+    fn size(&self) -> Fraction {
+        let exact = |text: &str| text.parse().unwrap_or_else(|_| BigDecimal::zero());
+        Fraction(exact(self.size.0), exact(self.size.1))
+    }
+}
+
+/// Units of one dimension.
+struct Family {
+    dimension: &'static str,
+    units: &'static [Entry],
+}
+
+impl Family {
+    /// The family of a quantity, which has the unit in which that is kept.
+    fn of(units: &Units) -> Option<&'static Family> {
+        FAMILIES.iter().find(|family| family.units.iter().any(|unit| unit.symbols[0] == units.kept))
+    }
+
+    /// The unit of a symbol, whatever its blanks and signs of products and powers; in other case if only one unit is written so.
+    fn find(&self, symbol: &str) -> Option<&'static Entry> {
+        let plain = plain(symbol);
+        let all =
+            || self.units.iter().flat_map(|unit| unit.symbols.iter().map(move |symbol| (unit, *symbol)));
+        let exact = all().find(|(_, symbol)| self::plain(symbol) == plain);
+        let mut like = all().filter(|(_, symbol)| self::plain(symbol).eq_ignore_ascii_case(&plain));
+        let unit = exact
+            .or_else(|| like.next().filter(|(unit, _)| like.all(|(other, _)| std::ptr::eq(*unit, other))));
+        unit.map(|(unit, _)| unit)
+    }
+}
+
+/// A symbol without blanks and signs of products and powers.
+fn plain(symbol: &str) -> String {
+    let mut text = String::new();
+    for sign in symbol.chars() {
+        match sign {
+            ' ' | '\u{a0}' | '\u{202f}' | '·' | '⋅' | '*' | '^' => {}
+            '²' => text.push('2'),
+            '³' => text.push('3'),
+            '°' => text.push_str("deg"),
+            '"' | '″' => text.push_str("in"),
+            '\'' | '′' => text.push_str("ft"),
+            'µ' => text.push('μ'),
+            sign => text.push(sign),
+        }
+    }
+    text
+}
+
+const fn unit(symbols: &'static [&'static str], size: &'static str) -> Entry {
+    Entry { symbols, size: (size, "1") }
+}
+
+const fn quotient(
+    symbols: &'static [&'static str],
+    numerator: &'static str,
+    denominator: &'static str,
+) -> Entry {
+    Entry { symbols, size: (numerator, denominator) }
+}
+
+/// All units. Sizes are exact by definition (NIST Special Publication 811 (2008), appendix B; the international foot and avoirdupois pound of
+/// 1959; standard gravity of 9.80665 m/s2; the US gallon of 231 cubic inches and the barrel of 42 gallons), those with pi to 40 digits. A specific
+/// gravity of mud is relative to 1,000 kg/m3.
+static FAMILIES: &[Family] = &[
+    Family { dimension: "ratio", units: &[unit(&["1"], "1"), unit(&["%"], "0.01")] },
+    Family {
+        dimension: "time",
+        units: &[
+            unit(&["s", "sec"], "1"),
+            unit(&["ms"], "0.001"),
+            unit(&["min"], "60"),
+            unit(&["h", "hr"], "3600"),
+        ],
+    },
+    Family { dimension: "frequency", units: &[unit(&["Hz"], "1"), unit(&["kHz"], "1000")] },
+    Family {
+        dimension: "rate",
+        units: &[unit(&["1/s"], "1"), quotient(&["1/min"], "1", "60"), quotient(&["1/h"], "1", "3600")],
+    },
+    Family {
+        dimension: "length",
+        units: &[
+            unit(&["m"], "1"),
+            unit(&["mm"], "0.001"),
+            unit(&["cm"], "0.01"),
+            unit(&["km"], "1000"),
+            unit(&["in", "inch", "inches"], "0.0254"),
+            unit(&["ft", "feet", "foot"], "0.3048"),
+        ],
+    },
+    Family {
+        dimension: "reciprocal length",
+        units: &[
+            unit(&["1/m"], "1"),
+            unit(&["1/mm"], "1000"),
+            quotient(&["1/in"], "1", "0.0254"),
+            quotient(&["1/ft"], "1", "0.3048"),
+        ],
+    },
+    Family {
+        dimension: "speed",
+        units: &[
+            unit(&["m/s"], "1"),
+            unit(&["mm/s"], "0.001"),
+            quotient(&["m/min"], "1", "60"),
+            quotient(&["m/h", "m/hr"], "1", "3600"),
+            unit(&["ft/s"], "0.3048"),
+            quotient(&["ft/min"], "0.3048", "60"),
+            quotient(&["ft/h", "ft/hr"], "0.3048", "3600"),
+        ],
+    },
+    Family {
+        dimension: "angle",
+        units: &[unit(&["deg"], "1"), quotient(&["rad"], "180", "3.141592653589793238462643383279502884197")],
+    },
+    Family {
+        dimension: "angular speed",
+        units: &[
+            unit(&["rpm", "rev/min", "r/min"], "1"),
+            quotient(&["rad/s"], "30", "3.141592653589793238462643383279502884197"),
+            quotient(&["deg/s"], "1", "6"),
+            unit(&["rev/s"], "60"),
+        ],
+    },
+    Family {
+        dimension: "mass",
+        units: &[
+            unit(&["kg"], "1"),
+            unit(&["g"], "0.001"),
+            unit(&["t"], "1000"),
+            unit(&["lb", "lbm", "lbs"], "0.45359237"),
+        ],
+    },
+    Family {
+        dimension: "density",
+        units: &[
+            unit(&["kg/m3"], "1"),
+            unit(&["g/cm3", "g/cc", "kg/l", "sg"], "1000"),
+            quotient(&["ppg", "lb/gal", "lbm/gal"], "0.45359237", "0.003785411784"),
+            quotient(&["lb/ft3", "lbm/ft3", "pcf"], "0.45359237", "0.028316846592"),
+        ],
+    },
+    Family {
+        dimension: "volume flow rate",
+        units: &[
+            unit(&["m3/s"], "1"),
+            quotient(&["m3/min"], "1", "60"),
+            quotient(&["m3/h", "m3/hr"], "1", "3600"),
+            unit(&["l/s"], "0.001"),
+            quotient(&["l/min", "lpm"], "0.001", "60"),
+            quotient(&["gpm", "gal/min"], "0.003785411784", "60"),
+            quotient(&["bbl/min", "bpm"], "0.158987294928", "60"),
+        ],
+    },
+    Family {
+        dimension: "force",
+        units: &[
+            unit(&["N"], "1"),
+            unit(&["daN"], "10"),
+            unit(&["kN"], "1000"),
+            unit(&["MN"], "1000000"),
+            unit(&["lbf"], "4.4482216152605"),
+            unit(&["klbf", "klb", "klbs", "kip", "kips"], "4448.2216152605"),
+            unit(&["kgf"], "9.80665"),
+            unit(&["tf"], "9806.65"),
+        ],
+    },
+    Family {
+        dimension: "torque",
+        units: &[
+            unit(&["N m"], "1"),
+            unit(&["daN m"], "10"),
+            unit(&["kN m"], "1000"),
+            unit(&["ft lbf", "lbf ft", "ft lb", "lb ft", "ft-lbf", "ft-lb"], "1.3558179483314004"),
+            unit(&["kft lbf", "klbf ft", "kft lb", "kft-lbf", "kft-lb"], "1355.8179483314004"),
+            unit(&["in lbf", "lbf in"], "0.1129848290276167"),
+        ],
+    },
+    Family {
+        dimension: "pressure",
+        units: &[
+            unit(&["Pa"], "1"),
+            unit(&["kPa"], "1000"),
+            unit(&["MPa"], "1000000"),
+            unit(&["GPa"], "1000000000"),
+            unit(&["bar"], "100000"),
+            quotient(&["psi", "lbf/in2"], "4.4482216152605", "0.00064516"),
+            quotient(&["ksi"], "4448.2216152605", "0.00064516"),
+            quotient(&["Mpsi"], "4448221.6152605", "0.00064516"),
+            quotient(&["lbf/100ft2", "lb/100ft2"], "4.4482216152605", "9.290304"),
+        ],
+    },
+    Family {
+        dimension: "pressure gradient",
+        units: &[
+            unit(&["Pa/m"], "1"),
+            unit(&["kPa/m"], "1000"),
+            unit(&["bar/m"], "100000"),
+            quotient(&["psi/ft"], "4.4482216152605", "0.000196644768"),
+        ],
+    },
+    Family {
+        dimension: "consistency",
+        units: &[
+            unit(&["Pa s^n"], "1"),
+            unit(&["mPa s^n"], "0.001"),
+            quotient(&["lbf s^n/100ft2", "lb s^n/100ft2"], "4.4482216152605", "9.290304"),
+        ],
+    },
+    Family {
+        dimension: "stiffness",
+        units: &[
+            unit(&["N/m"], "1"),
+            unit(&["kN/m"], "1000"),
+            unit(&["MN/m"], "1000000"),
+            quotient(&["lbf/in"], "4.4482216152605", "0.0254"),
+            quotient(&["lbf/ft"], "4.4482216152605", "0.3048"),
+        ],
+    },
+    Family {
+        dimension: "stiffness per length",
+        units: &[
+            unit(&["N/m2"], "1"),
+            unit(&["kN/m2"], "1000"),
+            unit(&["MN/m2"], "1000000"),
+            quotient(&["lbf/in2"], "4.4482216152605", "0.00064516"),
+        ],
+    },
+    Family {
+        dimension: "damping",
+        units: &[
+            unit(&["N s/m"], "1"),
+            unit(&["kN s/m"], "1000"),
+            quotient(&["lbf s/in"], "4.4482216152605", "0.0254"),
+        ],
+    },
+    Family {
+        dimension: "damping per length",
+        units: &[
+            unit(&["N s/m2"], "1"),
+            unit(&["kN s/m2"], "1000"),
+            quotient(&["lbf s/in2"], "4.4482216152605", "0.00064516"),
+        ],
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters;
+    use crate::units::{
+        ANGLE_IN_DEGREES, FLOW_RATE, FORCE, MUD_DENSITY, RATIO, SPEED_OF_ROTATION, TORQUE, WIDTH,
+        YIELD_STRESS,
+    };
+
+    #[test]
+    fn numbers_with_units_are_the_nearest_doubles_of_the_kept_unit() {
+        // Products and quotients of the defined sizes by hand, to all digits.
+        for (text, units, expected) in [
+            ("215.9 mm", &WIDTH, 0.2159),
+            ("8 1/2 in", &WIDTH, 0.2159),
+            ("12 1/4 in", &WIDTH, 0.31115),
+            ("12-1/4\"", &WIDTH, 0.31115),
+            ("3/4in", &WIDTH, 0.01905),
+            ("-0.5 ft", &WIDTH, -0.1524),
+            ("30klbf", &FORCE, 133_446.648_457_815),
+            ("-250 kN", &FORCE, -250_000.0),
+            ("1e2 daN", &FORCE, 1_000.0),
+            ("500 gpm", &FLOW_RATE, 0.031_545_098_2),
+            ("1893 l/min", &FLOW_RATE, 0.031_55),
+            ("2.65 sg", &MUD_DENSITY, 2_650.0),
+            ("1.2 g/cm³", &MUD_DENSITY, 1_200.0),
+            ("10000 ft·lbf", &TORQUE, 13_558.179_483_314_004),
+            ("20 kft-lb", &TORQUE, 27_116.358_966_628_008),
+            ("0.25 rev/s", &SPEED_OF_ROTATION, 15.0),
+            ("30°", &ANGLE_IN_DEGREES, 30.0),
+            ("5 %", &RATIO, 0.05),
+        ] {
+            assert_eq!(read(text, units), Ok(expected), "{text}");
+        }
+        // NIST SP 811 has seven digits of these.
+        for (text, units, published) in [
+            ("1 ppg", &MUD_DENSITY, 119.826_4),
+            ("1 gpm", &FLOW_RATE, 6.309_020e-5),
+            ("1 lbf/100 ft2", &YIELD_STRESS, 0.478_802_6),
+            ("1 rad/s", &SPEED_OF_ROTATION, 9.549_297),
+        ] {
+            let read = read(text, units).unwrap();
+            assert!((read / published - 1.0).abs() < 5e-7, "{text}: {read}");
+        }
+    }
+
+    #[test]
+    fn units_of_all_fields_are_read_by_the_sizes_of_the_vocabulary() {
+        for quantity in parameters::ALL {
+            let Some(units) = quantity.units else { continue };
+            assert_eq!(read(&format!("0.1 {}", units.kept), units), Ok(0.1), "{}", quantity.name);
+            for unit in [units.shown, units.field] {
+                let (text, value) = (format!("3 {}", unit.symbol), 3.0 * unit.size);
+                let read =
+                    read(&text, units).unwrap_or_else(|error| panic!("{}: {text}: {error}", quantity.name));
+                // The sizes of the vocabulary are rounded, and so is their product.
+                assert!((read / value - 1.0).abs() < 3.0 * f64::EPSILON, "{text}: {read} is not {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn symbols_are_unambiguous_within_a_dimension() {
+        for family in FAMILIES {
+            for unit in family.units {
+                for symbol in unit.symbols {
+                    assert!(family.find(symbol).is_some_and(|found| std::ptr::eq(found, unit)), "{symbol}");
+                }
+                let Fraction(numerator, denominator) = unit.size();
+                assert!(!numerator.is_zero() && !denominator.is_zero(), "{}", unit.symbols[0]);
+            }
+        }
+    }
+
+    #[test]
+    fn texts_of_other_dimensions_and_without_unit_are_refused_with_units_that_fit() {
+        let refused = |text: &str| read(text, &MUD_DENSITY).unwrap_err().to_string();
+        let fits = "kg/m3, g/cm3, ppg, lb/ft3";
+        assert_eq!(
+            refused("12 gpm"),
+            format!("a number with one of the units {fits}; `gpm` is a unit of volume flow rate")
+        );
+        assert_eq!(
+            refused("12 furlongs"),
+            format!("a number with one of the units {fits}; `furlongs` is unknown")
+        );
+        let long = "9".repeat(100) + " ppg";
+        for text in
+            ["", "ppg", "12", "steel", "1,5 ppg ", "1.5/2 ppg", "1/0 ppg", "--1 ppg", "nan ppg", &long]
+        {
+            let message = refused(text);
+            assert!(message.contains(fits), "{text}: {message}");
+        }
+        assert_eq!(read("1e999 ppg", &MUD_DENSITY), Err(EntryError::Size));
+    }
+}

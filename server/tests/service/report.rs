@@ -72,7 +72,7 @@ async fn a_report_has_the_values_of_the_service_and_is_the_same_for_equal_data()
         assert!(point.contains(words), "{words} in {point}");
     }
     let failed = text_of(bench.get(&format!("{path}/points/4/report")).await.text());
-    assert!(failed.contains("failed. The point failed:"), "{failed}");
+    assert!(failed.contains("Judgement failed") && failed.contains("The point failed: "), "{failed}");
 }
 
 #[tokio::test]

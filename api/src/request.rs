@@ -250,7 +250,7 @@ impl AppendRequest {
 
 impl SweepRequest {
     /// Names of the swept parameters.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &AxisName> {
+    pub fn names(&self) -> impl Iterator<Item = &AxisName> {
         self.axes.keys().chain(self.points.names())
     }
 

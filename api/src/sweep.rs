@@ -4,6 +4,7 @@ use drillsweep_table::{Column, Table};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
+use crate::axis::AxisName;
 use crate::problem::FieldProblem;
 use crate::refinement::RefinementState;
 use crate::request::{AppendRequest, SweepRequest};
@@ -22,6 +23,10 @@ pub struct Sweep {
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+    /// Names of the parameters that it varies, in the order of its request; absent for a single point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(example = json!(["flow_rate", "mud_density"]))]
+    pub varied: Vec<AxisName>,
     /// Its state as a whole.
     pub state: SweepState,
     /// Points by state.
@@ -58,10 +63,10 @@ pub struct Sweep {
     /// State of the refinement that was requested; in the answer to a refinement only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refinement: Option<RefinementState>,
-    /// Request of the sweep; left out of lists.
+    /// Request of the sweep; left out of lists, and if it is longer than 64 KiB (`links.request`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub request: Option<Box<SweepRequest>>,
-    /// Later requests, the points of each after those before: the latest hundred, all in an export; left out of lists.
+    /// Later requests, the points of each after those before: the latest hundred of 64 KiB, all in an export; left out of lists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub appended: Vec<AppendRequest>,
     /// Links to more of it.
@@ -218,6 +223,8 @@ pub struct SweepLinks {
     /// The sweep itself.
     #[serde(rename = "self")]
     pub this: String,
+    /// Its request.
+    pub request: String,
     /// Its points.
     pub points: String,
     /// One row a point, with its summary.
@@ -243,6 +250,7 @@ impl SweepLinks {
     pub fn new(id: &str) -> Self {
         let this = format!("/v1/sweeps/{id}");
         SweepLinks {
+            request: format!("{this}/request"),
             points: format!("{this}/points"),
             table: format!("{this}/table"),
             verification: format!("{this}/verification"),

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use drillsweep_api::{
-    FailureList, PointCounts, PointDetail, PointRow, Queue, Sweep, SweepDeletion, SweepList, SweepPatch,
-    SweepVerification, Worker, WorkerList,
+    AxisName, FailureList, PointCounts, PointDetail, PointRow, Queue, Sweep, SweepDeletion, SweepList,
+    SweepPatch, SweepVerification, Worker, WorkerList,
 };
 use drillsweep_quantity::unit;
 use jiff::{SignedDuration, Timestamp};
@@ -120,12 +120,14 @@ fn list_text(page: &SweepList) -> String {
             sweep.counts.failed.to_string(),
             seconds(sweep.created),
             sweep.owner.clone(),
+            sweep.varied.iter().map(AxisName::as_str).collect::<Vec<_>>().join(" "),
             sweep.name.clone().unwrap_or_default(),
             sweep.tags.join(" "),
         ]
     };
     let rows: Vec<Vec<String>> = page.sweeps.iter().map(row).collect();
-    let header = ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "name", "tags"];
+    let header =
+        ["sweep", "state", "points", "done", "failed", "created (UTC)", "owner", "varied", "name", "tags"];
     with_remainder(columns(&header, &rows, numbers_in(&[2, 3, 4])), page.next.is_some())
 }
 
@@ -607,6 +609,7 @@ mod tests {
     fn sweeps_are_listed_in_columns() {
         let mut tagged = sweep(PointCounts { total: 120, succeeded: 7, failed: 1, ..PointCounts::default() });
         tagged.name = Some("flow and density".to_owned());
+        tagged.varied = read(json!(["flow_rate", "mud_density"]));
         tagged.tags = read(json!(["campaign-7", "draft"]));
         let sweeps = vec![tagged, sweep(PointCounts { total: 1, ..PointCounts::default() })];
         insta::assert_snapshot!(list_text(&SweepList { sweeps, next: Some("cursor".to_owned()) }));

@@ -44,6 +44,7 @@ fn for_programs() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(openapi::service())
         .routes(routes!(sweeps::submit::create, sweeps::list::list))
         .routes(routes!(sweeps::show::show, sweeps::change::change, sweeps::change::delete))
+        .routes(routes!(sweeps::request::request))
         .routes(routes!(sweeps::change::cancel))
         .routes(routes!(sweeps::change::retry))
         .routes(routes!(sweeps::change::pause))

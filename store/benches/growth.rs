@@ -301,6 +301,7 @@ fn sweep(id: &str, owner: &str, points: i64) -> NewSweep {
         owner: owner.to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        varied_json: r#"["flow_rate"]"#.to_owned(),
         tags_json: "[]".to_owned(),
         cache: CachePolicy::Reuse,
         idempotency_key: None,

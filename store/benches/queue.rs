@@ -49,6 +49,7 @@ fn sweep_of(number: i64, points: i64) -> NewSweep {
         owner: "anne".to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        varied_json: r#"["flow_rate"]"#.to_owned(),
         tags_json: "[]".to_owned(),
         cache: CachePolicy::Reuse,
         idempotency_key: None,

@@ -106,6 +106,7 @@ async fn fill(config: &StoreConfig, points: u64, tables: u64, bytes: u64) {
         owner: "anne".to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        varied_json: r#"["flow_rate"]"#.to_owned(),
         tags_json: "[]".to_owned(),
         cache: CachePolicy::Reuse,
         idempotency_key: None,

@@ -1,7 +1,15 @@
 -- name: APPENDED
 -- Requests by which points were added to a sweep, latest first.
--- $1 sweep, $2 largest number of rows.
-SELECT request FROM appended WHERE sweep_id = $1 ORDER BY number DESC LIMIT $2
+-- $1 sweep, $2 largest number of rows, $3 largest length of all of them [bytes].
+SELECT request FROM appended
+JOIN (SELECT number, sum(octet_length(request)) OVER (ORDER BY number DESC) AS bytes FROM appended WHERE sweep_id = $1) AS latest
+  ON latest.number = appended.number
+WHERE sweep_id = $1 AND bytes <= $3 ORDER BY appended.number DESC LIMIT $2
+
+-- name: APPENDED_BYTES
+-- Length of all requests by which points were added to a sweep [bytes].
+-- $1 sweep.
+SELECT CAST(coalesce(sum(octet_length(request)), 0) AS bigint) FROM appended WHERE sweep_id = $1
 
 -- name: EXTENDED_SWEEP
 -- Data needed to add points to a sweep.
@@ -27,9 +35,10 @@ INSERT INTO scenario (hash, text) VALUES ($1, $2) ON CONFLICT (hash) DO NOTHING
 
 -- name: INSERT_SWEEP
 -- Stores a sweep, hidden until it is shown (`SHOW`); its counts follow (`COUNT`).
--- $1 sweep, $2 name, $3 owner, $4 request, $5 priority, $6 number of points, $7 time, $8 tags, $9 true if its points are recomputed.
-INSERT INTO sweep (id, name, owner, request, priority, points, created, tags, refreshes, hidden)
-VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $7)
+-- $1 sweep, $2 name, $3 owner, $4 request, $5 priority, $6 number of points, $7 time, $8 tags, $9 true if its points are recomputed,
+-- $10 names of its parameters.
+INSERT INTO sweep (id, name, owner, request, priority, points, created, tags, refreshes, varied, hidden)
+VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $7)
 
 -- name: KEEP_HIDDEN
 -- Renews the time of a hidden sweep whose points are being stored; changes nothing after the sweep was removed or cancelled.

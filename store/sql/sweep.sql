@@ -163,6 +163,16 @@ UPDATE sweep SET (points_queued, points_running, points_done, points_failed, poi
     WHERE p.sweep_id = $1)
 WHERE id = $1
 
+-- name: REQUEST
+-- Request of a sweep.
+-- $1 sweep.
+SELECT request FROM sweep WHERE id = $1 AND hidden IS NULL
+
+-- name: REQUEST_BYTES
+-- Length of a sweep's request [bytes].
+-- $1 sweep.
+SELECT CAST(octet_length(request) AS bigint) FROM sweep WHERE id = $1 AND hidden IS NULL
+
 -- name: REVIVE
 -- Withdraws the cancellation of a sweep.
 -- $1 sweep.

@@ -186,6 +186,7 @@ async fn killed_workers_lose_and_double_nothing() {
         owner: "anne".to_owned(),
         request_json: "{}".to_owned(),
         priority: 0,
+        varied_json: r#"["flow_rate"]"#.to_owned(),
         tags_json: "[]".to_owned(),
         cache: CachePolicy::Reuse,
         idempotency_key: None,

@@ -80,6 +80,14 @@ def test_values_with_units_make_the_points_of_those_in_si(client: Client) -> Non
     assert [error.pointer for error in malformed.value.errors] == ["/axes/flow_rate/values/1"]
 
 
+def test_the_request_is_read_whatever_its_length(client: Client) -> None:
+    points = [{"flow_rate": 0.01 + 1e-6 * number} for number in range(4000)]
+    sweep = client.submit("paper-200m", design="list", points=points)
+    sweep.cancel()
+    assert sweep.varied == ("flow_rate",)
+    assert sweep.refresh().request["points"] == points
+
+
 def test_a_sample_is_verified_by_the_reference(client: Client) -> None:
     # Node 49 comes to rest on the wall within this second; a coarse method gets its orbit wrong.
     coarse = {**SHORT, "accuracy": {"integrator": "generalized_alpha", "step": 0.002}, "recording.rate_hz": 500}

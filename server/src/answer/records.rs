@@ -33,6 +33,7 @@ pub(crate) fn new_sweep(
         name: request.name.clone(),
         owner: request.owner.clone().unwrap_or_else(|| DEFAULT_OWNER.to_owned()),
         request_json: write(request)?,
+        varied_json: write(&request.names().collect::<Vec<_>>())?,
         priority: request.priority.into(),
         tags_json: write(&request.tags)?,
         cache,
@@ -66,7 +67,7 @@ pub(crate) fn new_points(expansion: &Expansion) -> Result<Vec<NewPoint>> {
     expansion.points.iter().map(new_point).collect()
 }
 
-/// A sweep of the API without its request.
+/// A sweep of the API without its requests.
 pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
     let state = match (record.is_cancelled, record.finished) {
         (true, _) => SweepState::Cancelled,
@@ -103,6 +104,7 @@ pub(crate) fn sweep(record: &SweepRecord) -> Result<Sweep> {
         refinement: None,
         request: None,
         tags: read(&record.tags_json)?,
+        varied: read(&record.varied_json)?,
         appended: Vec::new(),
         links: SweepLinks::new(&record.id),
     })
@@ -117,13 +119,6 @@ fn counts(counts: &StateCounts) -> PointCounts {
         failed: counts.failed.unsigned_abs(),
         cancelled: counts.cancelled.unsigned_abs(),
     }
-}
-
-/// A sweep of the API with its request and those that added points.
-pub(crate) fn sweep_with_requests(record: &SweepRecord, appended: &[String]) -> Result<Sweep> {
-    let request = Some(Box::new(read(&record.request_json)?));
-    let appended = appended.iter().map(|request| read(request)).collect::<Result<_>>()?;
-    Ok(Sweep { request, appended, ..sweep(record)? })
 }
 
 /// A point's row in a list.

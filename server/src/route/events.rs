@@ -21,7 +21,7 @@ use crate::app::App;
 use crate::app::shares::Share;
 use crate::guard::caller::Caller;
 use crate::openapi::answers::Problems;
-use crate::route::sweeps::{PROGRESS_INTERVAL, load};
+use crate::route::sweeps::{PROGRESS_INTERVAL, state};
 
 const LAST_EVENT_ID: &str = "last-event-id";
 
@@ -77,7 +77,7 @@ pub(crate) async fn follow(
     // A finished sweep's version is above its last event: a client that has seen only that event still gets the end.
     if sequence >= version
         && after.is_some()
-        && load(&app, &id).await?.finished.is_some()
+        && state(&app, &id).await?.finished.is_some()
         && app.store.events(&id, sequence, 1).await?.is_empty()
     {
         return Ok(StatusCode::NO_CONTENT.into_response());
@@ -188,7 +188,7 @@ impl Follower {
         }
         // The version was read before the events, so that all events up to it have been sent.
         self.sequence = self.sequence.max(version);
-        let sweep = Sweep { request: None, ..load(&self.app, &self.id).await? };
+        let sweep = state(&self.app, &self.id).await?;
         if sweep.finished.is_some() && self.app.store.sweep_version(&self.id).await? != Some(version) {
             // The sweep ended meanwhile: the next call sends its last events first.
             return Ok(());

@@ -20,11 +20,12 @@ use crate::answer::blocking::beside;
 use crate::answer::body::{Sink, WAITING_CHUNKS};
 use crate::answer::chunk;
 use crate::answer::error::{Error, Result};
-use crate::answer::extract::{Path, Query, value};
+use crate::answer::extract::{Path, Query, memory_of_reading, value};
 use crate::answer::stored::Stored;
 use crate::app::App;
 use crate::app::lane::Place;
 use crate::openapi::answers::Problems;
+use crate::route::sweeps::{load_whole, state};
 use crate::route::verification::{Verified, memory_of_points};
 
 /// Number of points whose files are looked up at once.
@@ -60,9 +61,12 @@ pub(crate) async fn export(
     Path(id): Path<String>,
     Query(query): Query<ExportQuery>,
 ) -> Result<Response> {
-    let sweep = crate::route::sweeps::load_whole(&app, &id).await?;
+    let total = state(&app, &id).await?.counts.total;
+    let requests = app.store.request_bytes(&id).await?.unwrap_or(0) + app.store.appended_bytes(&id).await?;
+    let of_requests = memory_of_reading(requests.unsigned_abs() as usize) as u64;
     // Taken before the answer begins, which could only break off without memory for the table.
-    let memory = app.view(memory_of_points(&app, &id, sweep.counts.total).await?).await?;
+    let memory = app.view(of_requests + memory_of_points(&app, &id, total).await?).await?;
+    let sweep = load_whole(&app, &id).await?;
     let sweep = serde_json::to_vec_pretty(&sweep).map_err(|error| Error::internal(&error))?;
     let (held, allowance) = app.file().await?;
     let (sender, receiver) = mpsc::channel(WAITING_CHUNKS);

@@ -146,6 +146,55 @@ async fn sweeps_are_listed_newest_first_in_pages() {
 }
 
 #[tokio::test]
+async fn sweeps_have_the_names_of_their_parameters_in_lists_and_alone() {
+    let bench = Bench::new().await;
+    let axis = json!({"values": [1200, 1300]});
+    let grid = json!({"preset": "paper-200m", "axes": {"mud_density": axis, "operation.rotation_speed_rpm": {"values": [120]}}});
+    let list =
+        json!({"preset": "paper-200m", "design": "list", "points": [{"flow_rate": 0.01, "duration": 2}]});
+    for (request, names) in [
+        (grid, json!(["mud_density", "operation.rotation_speed_rpm"])),
+        (list, json!(["flow_rate", "duration"])),
+        (json!({"preset": "paper-200m"}), json!(null)),
+    ] {
+        let id = bench.submit(request).await;
+        assert_eq!(bench.get("/v1/sweeps?limit=1").await.json()["sweeps"][0]["varied"], names);
+        assert_eq!(bench.get(&format!("/v1/sweeps/{id}")).await.json()["varied"], names);
+    }
+}
+
+#[tokio::test]
+async fn long_requests_are_left_out_of_answers_and_served_alone() {
+    let bench = Bench::new().await;
+    let listed = |count: u32| {
+        let points: Vec<_> =
+            (0..count).map(|number| json!({"flow_rate": 0.01 + 1e-6 * f64::from(number)})).collect();
+        json!({"preset": "paper-200m", "owner": "ann", "design": "list", "points": points})
+    };
+    let path = format!("/v1/sweeps/{}", bench.submit(listed(5_000)).await);
+    for answer in ["", "?wait=10ms"] {
+        let answer = bench.get(&format!("{path}{answer}")).await;
+        assert!(answer.body.len() < 10_000, "{} bytes", answer.body.len());
+        let sweep = answer.json();
+        assert_eq!((&sweep["request"], &sweep["varied"]), (&json!(null), &json!(["flow_rate"])));
+        let request = bench.get(sweep["links"]["request"].as_str().unwrap()).await.json();
+        assert_eq!(request["points"], listed(5_000)["points"]);
+    }
+    let short = bench.submit(listed(3)).await;
+    let sweep = bench.get(&format!("/v1/sweeps/{short}")).await.json();
+    assert_eq!(sweep["request"], bench.get(&format!("/v1/sweeps/{short}/request")).await.json());
+    assert_eq!(bench.get("/v1/sweeps/none/request").await.status, 404);
+
+    // Points are added to the sweep by its stored request.
+    let added = json!({"design": "list", "points": [{"flow_rate": 0.05}]});
+    let sweep = bench.post(&format!("{path}/points"), added.clone()).await.json();
+    assert_eq!(
+        (&sweep["counts"]["total"], &sweep["appended"][0]["points"]),
+        (&json!(5_001), &added["points"])
+    );
+}
+
+#[tokio::test]
 async fn a_sweep_reports_waiting_for_a_worker_of_its_version() {
     let bench = Bench::new().await;
     let physics = i64::from(PHYSICS_VERSION);

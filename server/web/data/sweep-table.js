@@ -125,16 +125,15 @@ export const SHORT = { "mud.flow_rate": "flow_rate", "mud.density": "mud_density
 
 /**
  * The swept parameters, as the table calls them: in the request's order, how it gives the values of each, and what it calls them.
- * @param {any} sweep with its request
+ * @param {any} sweep with its request, unless that is long
  * @param {string[]} names of the table's columns
  * @returns {{axes: string[], spans: Record<string, any>, paths: Record<string, string>}}
  */
 export function sweptBy(sweep, names) {
   const given = sweep.request?.axes ?? {};
-  const paths = Object.keys(given).length
-    ? Object.keys(given)
-    : Object.keys(sweep.request?.points?.[0] ?? {});
-  const known = paths
+  /** @type {string[]} */
+  const varied = sweep.varied ?? [];
+  const known = varied
     .map((path) => ({ path, name: names.includes(path) ? path : (SHORT[path] ?? path) }))
     .filter(({ name }) => names.includes(name));
   return {

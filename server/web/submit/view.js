@@ -420,7 +420,8 @@ function rowsOf(set) {
 async function begin(query, signal) {
   const from = query.get("from");
   if (from) {
-    const { request } = await get(`/v1/sweeps/${encodeURIComponent(from)}`, {}, signal);
+    const sweep = await get(`/v1/sweeps/${encodeURIComponent(from)}`, {}, signal);
+    const request = sweep.request ?? (await get(sweep.links.request, {}, signal));
     return { start: { ...request, tags: request?.tags ?? [] }, isGoneOn: true };
   }
   const request = query.get("request") ?? (query.has(HELD) ? held() : null);

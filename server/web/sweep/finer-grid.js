@@ -1,6 +1,6 @@
 // A finer grid over a region of a map: its bounds and counts, what it would take, and the request that adds it to the sweep.
 
-import { Problem, send } from "../data/api.js";
+import { get, Problem, send } from "../data/api.js";
 import { duration, label, say, title, unit } from "../data/units.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { notice } from "../ui/notices.js";
@@ -165,7 +165,9 @@ export class FinerGrid {
     this.#snippets.dispatchEvent(new Event("redraw"));
     try {
       const scene = Object.fromEntries(
-        Object.entries(sweep.request ?? {}).filter(([name]) => !OF_THE_SWEEP.has(name)),
+        Object.entries(sweep.request ?? (await get(sweep.links.request, {}, signal))).filter(
+          ([name]) => !OF_THE_SWEEP.has(name),
+        ),
       );
       const answer = await send("POST", "/v1/sweeps?dry_run=true", { ...scene, ...this.#request() }, signal);
       if (mine !== this.#generation) return;

@@ -426,7 +426,8 @@ async function readSlice({ sweep, table, query }, { x, y, colour, held: heldName
       column: others[index],
     };
   });
-  const { axes: spans, design = "grid" } = sweep.request ?? {};
+  // A request that is too long for the answer lists its points or values.
+  const { axes: spans, design = "grid" } = sweep.request ?? { design: "list" };
   const isGrid =
     !y ||
     (spans && design === "grid") ||

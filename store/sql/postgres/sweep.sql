@@ -8,7 +8,7 @@ SELECT greatest(coalesce((SELECT max(ordinal) FROM point WHERE sweep_id = $1 AND
 -- Sweeps, newest first; a null filter matches all.
 -- $1 owner, $2 last sweep of the previous page, $3 largest number of rows, $4 state, $5 part of the name, $6 tag, $7 beginning
 -- of the identifier.
-SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, varied, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,
@@ -30,7 +30,7 @@ ORDER BY id DESC LIMIT $3
 -- name: ONE
 -- A sweep.
 -- $1 sweep.
-SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, varied, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,

@@ -9,7 +9,7 @@ SELECT max(coalesce((SELECT max(ordinal) FROM point WHERE sweep_id = $1 AND veri
 -- $1 owner, $2 last sweep of the previous page, $3 largest number of rows, $4 state, $5 part of the name, $6 tag, $7 beginning
 -- of the identifier.
 -- CROSS JOIN starts from the leased work items: the planner cannot know that they are few.
-SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, varied, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,
@@ -32,7 +32,7 @@ ORDER BY id DESC LIMIT $3
 -- A sweep.
 -- $1 sweep.
 -- CROSS JOIN starts from the leased work items: the planner cannot know that they are few.
-SELECT id, name, owner, request, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
+SELECT id, name, owner, varied, priority, version, revision, cancelled, paused, pinned, expires, tags, created, finished,
        points, points_queued, points_running, points_done, points_failed, points_cancelled,
        verifications, verifications_queued, verifications_running, verifications_done, verifications_failed,
        verifications_cancelled,

@@ -10,9 +10,15 @@ use crate::error::Result;
 /// Version and description of a migration, which are its file's name, and its text.
 type File = (i64, &'static str, &'static str);
 
-const SQLITE: &[File] = &[(1, "schema", include_str!("../../../migrations/sqlite/0001_schema.sql"))];
+const SQLITE: &[File] = &[
+    (1, "schema", include_str!("../../../migrations/sqlite/0001_schema.sql")),
+    (2, "varied", include_str!("../../../migrations/sqlite/0002_varied.sql")),
+];
 
-const POSTGRES: &[File] = &[(1, "schema", include_str!("../../../migrations/postgres/0001_schema.sql"))];
+const POSTGRES: &[File] = &[
+    (1, "schema", include_str!("../../../migrations/postgres/0001_schema.sql")),
+    (2, "varied", include_str!("../../../migrations/postgres/0002_varied.sql")),
+];
 
 /// All migrations of SQLite, to be run on a database: those that it has not had are applied, in the order of their versions. A
 /// database that has had one of another text, or one that is not here, is refused.

@@ -17,8 +17,8 @@ pub struct SweepRecord {
     pub name: Option<String>,
     /// Owner, whose share of the workers it counts against.
     pub owner: String,
-    /// The request as JSON.
-    pub request_json: String,
+    /// Names of the parameters that it varies, in the order of its request, as a JSON array.
+    pub varied_json: String,
     /// Higher goes first.
     pub priority: i64,
     /// Raised with every change of one of its points.
@@ -70,6 +70,22 @@ impl Store {
     pub async fn sweep(&self, id: &str) -> Result<Option<SweepRecord>> {
         self.apply_left_transitions().await;
         query(sql::sweep::ONE).bind(id).first_record(&self.database, SweepRecord::read).await
+    }
+
+    /// Request of a sweep as JSON; none if there is no such sweep.
+    ///
+    /// # Errors
+    /// The database fails.
+    pub async fn request_json(&self, id: &str) -> Result<Option<String>> {
+        query(sql::sweep::REQUEST).bind(id).first_scalar(&self.database).await
+    }
+
+    /// Length of a sweep's request \[bytes\]; none if there is no such sweep.
+    ///
+    /// # Errors
+    /// The database fails.
+    pub async fn request_bytes(&self, id: &str) -> Result<Option<i64>> {
+        query(sql::sweep::REQUEST_BYTES).bind(id).first_scalar(&self.database).await
     }
 
     /// Sweeps, newest first, those that the filter lets through, before the sweep `before`.
@@ -139,7 +155,7 @@ impl SweepRecord {
             id: row.get("id")?,
             name: row.get("name")?,
             owner: row.get("owner")?,
-            request_json: row.get("request")?,
+            varied_json: row.get("varied")?,
             priority: row.get("priority")?,
             version: row.get("version")?,
             revision: row.get("revision")?,

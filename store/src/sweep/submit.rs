@@ -27,6 +27,8 @@ pub struct NewSweep {
     pub owner: String,
     /// The request as JSON.
     pub request_json: String,
+    /// Names of the parameters that it varies, as a JSON array.
+    pub varied_json: String,
     /// Higher goes first.
     pub priority: i64,
     /// Words to find it by, as a JSON array.
@@ -317,15 +319,24 @@ impl Store {
         Ok(AppendOutcome::Added(fresh.len() as u64))
     }
 
-    /// The requests by which points were added to a sweep: the last `limit` of them, in their order.
+    /// The requests by which points were added to a sweep: the last `limit` of them with at most so much text as `bytes`, in their
+    /// order.
     ///
     /// # Errors
     /// The database fails.
-    pub async fn appended_requests(&self, sweep_id: &str, limit: i64) -> Result<Vec<String>> {
-        let mut requests: Vec<String> =
-            query(sql::submit::APPENDED).bind(sweep_id).bind(limit).scalars(&self.database).await?;
+    pub async fn appended_requests(&self, sweep_id: &str, limit: i64, bytes: i64) -> Result<Vec<String>> {
+        let appended = query(sql::submit::APPENDED).bind(sweep_id).bind(limit).bind(bytes);
+        let mut requests: Vec<String> = appended.scalars(&self.database).await?;
         requests.reverse();
         Ok(requests)
+    }
+
+    /// Length of all requests by which points were added to a sweep \[bytes\].
+    ///
+    /// # Errors
+    /// The database fails.
+    pub async fn appended_bytes(&self, sweep_id: &str) -> Result<i64> {
+        query(sql::submit::APPENDED_BYTES).bind(sweep_id).scalar(&self.database).await
     }
 
     /// Number of points that have a result already, of their own or by fuller work: their keys with that of the latter.
@@ -375,6 +386,7 @@ async fn insert_sweep(tx: &mut Transaction, sweep: &NewSweep, now: i64) -> Resul
         .bind(now)
         .bind(&sweep.tags_json)
         .bind(sweep.cache == CachePolicy::Refresh)
+        .bind(&sweep.varied_json)
         .execute(&mut *tx)
         .await?;
     if let Some((key, body_hash)) = &sweep.idempotency_key {

@@ -86,6 +86,7 @@ pub(crate) fn sweep(id: &str, numbers: impl IntoIterator<Item = u32>) -> NewSwee
         owner: "anne".to_owned(),
         request_json: format!(r#"{{"request":"{id}"}}"#),
         priority: 0,
+        varied_json: r#"["flow_rate"]"#.to_owned(),
         tags_json: "[]".to_owned(),
         cache: CachePolicy::Reuse,
         idempotency_key: None,

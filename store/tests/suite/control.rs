@@ -132,7 +132,7 @@ pub(crate) async fn points_are_added_once_and_go_on_from_the_last<E: Engine>() {
     let record = sweep_record(&store, "s").await;
     assert_eq!(record.counts, StateCounts { total: 4, queued: 2, done: 2, ..StateCounts::default() });
     assert_eq!(record.finished, None);
-    assert_eq!(store.appended_requests("s", 9).await.unwrap(), [r#"{"added":1}"#]);
+    assert_eq!(store.appended_requests("s", 9, 100).await.unwrap(), [r#"{"added":1}"#]);
     assert_eq!(point_record(&store, "s", 3).await.work_key, key(3));
     assert_eq!(point_record(&store, "s", 4).await.work_key, key(4));
     for _ in 0..2 {
@@ -189,10 +189,16 @@ pub(crate) async fn requests_are_kept_in_order_and_returned_up_to_a_limit<E: Eng
         append_one(&store, "s", number, &format!(r#"{{"added":{number}}}"#)).await;
         append_one(&store, "other", number, "{}").await;
     }
-    let told = async |limit| store.appended_requests("s", limit).await.unwrap();
+    let kept = async |limit, bytes| store.appended_requests("s", limit, bytes).await.unwrap();
     let expected: Vec<String> = (1..=12).map(|number| format!(r#"{{"added":{number}}}"#)).collect();
-    assert_eq!(told(i64::MAX).await, expected);
-    assert_eq!(told(3).await, expected[9..]);
+    assert_eq!(kept(i64::MAX, i64::MAX).await, expected);
+    assert_eq!(kept(3, i64::MAX).await, expected[9..]);
+    // The last three have 12 bytes each, those before 11.
+    for (bytes, first) in [(11, 12), (12, 11), (35, 10), (36, 9), (47, 8), (3 * 12 + 9 * 11, 0)] {
+        assert_eq!(kept(i64::MAX, bytes).await, expected[first..], "{bytes}");
+    }
+    assert_eq!(store.appended_bytes("s").await.unwrap(), 3 * 12 + 9 * 11);
+    assert_eq!(store.appended_bytes("none").await.unwrap(), 0);
     let record = sweep_record(&store, "s").await;
     assert_eq!(record.counts, StateCounts { total: 13, queued: 13, ..StateCounts::default() });
     assert_eq!(point_record(&store, "s", 13).await.work_key, key(12));

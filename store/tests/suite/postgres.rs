@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::Poll;
 
 use drillsweep_store::{
-    Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, with_backoff,
+    NewSweep, Renewal, Role, Store, StoreConfig, StoreError, WorkKey, WorkState, WorkerRecord, with_backoff,
 };
 use sqlx::AssertSqlSafe;
 use sqlx::postgres::PgPool;
@@ -113,6 +113,39 @@ async fn the_schema_has_the_states_stages_and_transitions_of_work() {
                 .await;
             assert_eq!(changed.is_ok(), from == to || from.may_become(to), "{key}");
         }
+    }
+}
+
+#[tokio::test]
+async fn sweeps_of_an_earlier_schema_get_the_names_of_their_parameters() {
+    let engine = <Postgres>::new();
+    let store = engine.open().await;
+    let requests = [
+        ("grid", r#"{"axes":{"mud_density":{"values":[1]},"flow_rate":{"from":0,"to":1,"count":2}}}"#),
+        (
+            "list",
+            r#"{"design":"list","points":[{"mud_density":1,"duration":2},{"mud_density":2,"duration":3}]}"#,
+        ),
+        ("point", r#"{"preset":"paper-200m"}"#),
+    ];
+    for (id, request) in requests {
+        submit(&store, &NewSweep { request_json: request.to_owned(), ..sweep(id, [1]) }).await;
+    }
+    store.close().await;
+    let database = engine.database().await;
+    for change in ["ALTER TABLE sweep DROP COLUMN varied", "DELETE FROM _sqlx_migrations WHERE version = 2"] {
+        sqlx::query(change).execute(&database).await.unwrap();
+    }
+    database.close().await;
+
+    let store = engine.open().await;
+    for (id, names) in [
+        ("grid", vec!["mud_density", "flow_rate"]),
+        ("list", vec!["mud_density", "duration"]),
+        ("point", vec![]),
+    ] {
+        let varied: Vec<String> = serde_json::from_str(&sweep_record(&store, id).await.varied_json).unwrap();
+        assert_eq!(varied, names, "{id}");
     }
 }
 

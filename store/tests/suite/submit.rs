@@ -19,7 +19,8 @@ pub(crate) async fn a_sweep_is_read_back_as_it_was_submitted<E: Engine>() {
     let record = sweep_record(&store, "s").await;
     assert_eq!(record.name.as_deref(), Some("sweep s"));
     assert_eq!(record.owner, "anne");
-    assert_eq!(record.request_json, r#"{"request":"s"}"#);
+    assert_eq!(record.varied_json, r#"["flow_rate"]"#);
+    assert_eq!(store.request_json("s").await.unwrap().as_deref(), Some(r#"{"request":"s"}"#));
     assert_eq!(record.counts, StateCounts { total: 3, queued: 3, ..StateCounts::default() });
     assert_eq!((record.progress, record.finished, record.is_cancelled), (0.0, None, false));
     let system = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis() as i64;
@@ -33,6 +34,9 @@ pub(crate) async fn a_sweep_is_read_back_as_it_was_submitted<E: Engine>() {
     assert_eq!(store.point("s", 4).await.unwrap(), None);
     assert_eq!(store.sweep("t").await.unwrap(), None);
     assert_eq!(store.sweep_version("t").await.unwrap(), None);
+    assert_eq!(store.request_bytes("s").await.unwrap(), Some(15));
+    assert_eq!(store.request_bytes("t").await.unwrap(), None);
+    assert_eq!(store.request_json("t").await.unwrap(), None);
 }
 
 pub(crate) async fn a_result_is_read_back_with_its_artifacts_and_fills_the_table<E: Engine>() {

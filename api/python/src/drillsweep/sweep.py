@@ -115,6 +115,11 @@ class Sweep(Reported):
         return tuple(self._data.get("tags", ()))
 
     @property
+    def varied(self) -> tuple[str, ...]:
+        """Names of the parameters that it varies, in the order of its request."""
+        return tuple(self._data.get("varied", ()))
+
+    @property
     def priority(self) -> int:
         """Higher goes first among the sweeps of one owner."""
         return int(self._data["priority"])
@@ -182,7 +187,7 @@ class Sweep(Reported):
     def request(self) -> dict[str, Any]:
         """Request of the sweep."""
         if "request" not in self._data:
-            self.refresh()
+            self._data["request"] = self._client.get_json(f"{self.path}/request")
         return dict(self._data["request"])
 
     @property

@@ -6,7 +6,7 @@ use axum::Extension;
 use axum::extract::State;
 use drillsweep_api::{
     AppendRequest, LIMITS, PHYSICS_VERSION, ProblemKind, RefinedSamples, RefinementState, Sweep,
-    expand_added, sample,
+    SweepRequest, expand_added, sample,
 };
 use drillsweep_store::{Addition, AppendOutcome, NewVerification, Store};
 use tokio::runtime::Handle;
@@ -21,8 +21,11 @@ use crate::guard::caller::Caller;
 use crate::guard::quota;
 use crate::openapi::answers::Problems;
 use crate::route::sweeps::expand::{expand_body, make_room};
-use crate::route::sweeps::load;
+use crate::route::sweeps::{load, state};
 use crate::route::verification::Verified;
+
+/// Most text of the requests that added points to a sweep: an export has all of them \[bytes\].
+const APPENDED_BYTES: u64 = 16 << 20;
 
 /// Add points to a sweep
 ///
@@ -47,11 +50,8 @@ pub(crate) async fn append(
     Path(id): Path<String>,
     body: extract::Body,
 ) -> Result<Json<Sweep>> {
-    let sweep = load(&app, &id).await?;
-    let Some(original) = sweep.request else {
-        return Err(Error::internal("a sweep was read without its request"));
-    };
-    let verify = original.verify;
+    let sweep = state(&app, &id).await?;
+    let original = app.store.request_json(&id).await?.ok_or_else(|| records::no_such_sweep(&id))?;
     let samples = SweepPoints {
         store: app.store.clone(),
         runtime: Handle::current(),
@@ -60,6 +60,7 @@ pub(crate) async fn append(
     };
     let config = app.config.clone();
     let expanded = expand_body(&app, &caller, &body, move |mut added: AppendRequest, work, memory| {
+        let original: SweepRequest = records::read(&original)?;
         let mut refinement = None;
         if let Some(refine) = added.refinement()? {
             let refined = RefinedSamples::new(refine.clone(), &original, &config.operating_limits)?;
@@ -80,10 +81,10 @@ pub(crate) async fn append(
         }
         let expansion = expand_added(&request, &original, &|| work.check())?;
         let points = records::new_points(&expansion)?;
-        Ok(Ok((refinement, Some((request_json, expansion, points)))))
+        Ok(Ok((refinement, Some((request_json, expansion, points, original.verify)))))
     });
     let ((refinement, added), _memory) = expanded.await?;
-    let Some((request_json, expansion, points)) = added else {
+    let Some((request_json, expansion, points, verify)) = added else {
         return Ok(Json(Sweep { refinement, ..load(&app, &id).await? }));
     };
     let (expansion, verification) = match verify {
@@ -105,6 +106,14 @@ pub(crate) async fn append(
             place.run(verify).await?.0
         }
     };
+    let appended = app.store.appended_bytes(&id).await?.unsigned_abs() + request_json.len() as u64;
+    if appended > APPENDED_BYTES {
+        let detail = format!(
+            "the requests that added points to sweep {id} would have {appended} bytes; at most {APPENDED_BYTES} are kept with a \
+             sweep; submit a new one"
+        );
+        return Err(Error::new(ProblemKind::Conflict, detail));
+    }
     quota::check_open_points(&app, &sweep.owner, points.len() + verification.runs.len()).await?;
     let base_json = records::write(&expansion.base)?;
     let addition = Addition {

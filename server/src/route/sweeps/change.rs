@@ -17,7 +17,7 @@ use crate::answer::json::Json;
 use crate::answer::records;
 use crate::app::App;
 use crate::openapi::answers::Problems;
-use crate::route::sweeps::load;
+use crate::route::sweeps::{load, state};
 
 /// Cancel a sweep
 ///
@@ -109,7 +109,7 @@ pub(crate) async fn change(
     extract::Json(patch): extract::Json<SweepPatch>,
 ) -> Result<Tagged> {
     check_patch(&patch)?;
-    let current = load(&app, &id).await?.revision;
+    let current = state(&app, &id).await?.revision;
     let expected = expected_revision(&headers, current)?;
     if let Some(Some(expires)) = patch.expires {
         let now = records::timestamp(app.store.now_ms().await?)?;
@@ -126,7 +126,7 @@ pub(crate) async fn change(
     };
     match app.store.change_sweep(&id, &changes, expected).await? {
         ChangeOutcome::Changed => Ok(Tagged(load(&app, &id).await?)),
-        ChangeOutcome::OtherRevision => Err(changed_meanwhile(load(&app, &id).await?.revision)),
+        ChangeOutcome::OtherRevision => Err(changed_meanwhile(state(&app, &id).await?.revision)),
         ChangeOutcome::NoSuchSweep => Err(records::no_such_sweep(&id)),
     }
 }
@@ -174,7 +174,7 @@ pub(crate) async fn delete(
     Query(DeleteQuery { dry_run }): Query<DeleteQuery>,
     headers: HeaderMap,
 ) -> Result<Json<SweepDeletion>> {
-    let current = load(&app, &id).await?.revision;
+    let current = state(&app, &id).await?.revision;
     let expected = expected_revision(&headers, current)?;
     let refused = |detail: String| Err(Error::new(ProblemKind::Conflict, detail));
     let (store, deleted) = (app.store.clone(), id.clone());
@@ -186,7 +186,7 @@ pub(crate) async fn delete(
         DeleteOutcome::Unfinished => {
             refused(format!("sweep {id} has points that are not final; cancel it first, or wait for them"))
         }
-        DeleteOutcome::OtherRevision => Err(changed_meanwhile(load(&app, &id).await?.revision)),
+        DeleteOutcome::OtherRevision => Err(changed_meanwhile(state(&app, &id).await?.revision)),
         DeleteOutcome::NoSuchSweep => Err(records::no_such_sweep(&id)),
     }
 }

@@ -14,7 +14,7 @@ use crate::answer::extract::{Path, Query, value};
 use crate::app::App;
 use crate::guard::caller::Caller;
 use crate::openapi::answers::Problems;
-use crate::route::sweeps::{PROGRESS_INTERVAL, load, load_findings};
+use crate::route::sweeps::{PROGRESS_INTERVAL, load_findings, state};
 
 /// Query of a sweep.
 #[derive(Deserialize, utoipa::IntoParams)]
@@ -98,7 +98,7 @@ async fn wait_for(app: &App, before: Sweep, wait: Duration, until: Until) -> Res
         // The version shows new states cheaply; progress within a point does not raise it.
         let current = app.store.sweep_version(&before.id).await?;
         if version != Some(current) || read.elapsed() >= PROGRESS_INTERVAL {
-            sweep = load(app, &before.id).await?;
+            sweep = state(app, &before.id).await?;
             (version, read) = (Some(current), Instant::now());
         }
     }

@@ -103,7 +103,7 @@ def test_field_units_hold_in_the_form_and_the_request_is_in_si_units(opened: Ope
 
 def test_recorded_nodes_and_windows_are_lists(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m")
-    page.get_by_text("Recorded nodes, windows of spectra").click()
+    page.get_by_text("Recorded nodes, windows of statistics and spectra").click()
     expect(page.get_by_label("Node 2", exact=True)).to_have_value("49")
     page.get_by_role("button", name="Remove node 1").click()
     page.get_by_role("button", name="Add a node").click()

@@ -363,7 +363,7 @@ def test_a_sweep_that_has_not_begun_waits_behind_others(idle: str, opened: Opens
 def test_a_state_has_one_colour_on_the_page(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
     picture = drawn(page, "over flow rate")
-    of_word = "element => getComputedStyle(element).color"
+    of_word = "element => getComputedStyle(element, '::before').color"
     word = page.locator(".state.succeeded, .state.completed").first.evaluate(of_word)
     of_cell = (
         "place => { const span = document.createElement('span'); span.style.color = place.data[0].colorscale[0][1];"

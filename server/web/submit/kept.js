@@ -101,14 +101,14 @@ export class Kept {
         (value) => put({ window: windowWith(this.#part.window, name, value) }),
         { isOptional: true },
       );
-    const every = numberBox("Every how many samples", "", decimation, (value) => put({ decimation: value }), {
+    const every = numberBox("Every n-th sample", "", decimation, (value) => put({ decimation: value }), {
       min: 1,
     });
     return [
       h("label", { class: "field" }, h("span", {}, "Histories of nodes"), nodes),
-      h("label", { class: "field" }, h("span", {}, "One of samples"), every),
-      h("label", { class: "field" }, h("span", {}, "from [s]"), end("from")),
-      h("label", { class: "field" }, h("span", {}, "to [s]"), end("to")),
+      h("label", { class: "field" }, h("span", {}, "Every n-th sample"), every),
+      h("label", { class: "field" }, h("span", {}, "From [s]"), end("from")),
+      h("label", { class: "field" }, h("span", {}, "To [s]"), end("to")),
     ];
   }
 }

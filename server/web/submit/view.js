@@ -9,6 +9,7 @@ import { attend } from "../ui/notices.js";
 import { go, held, hold, keep, link } from "../ui/router.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { snippets } from "../ui/snippets.js";
+import { Accuracy, accuracyWay } from "./accuracy.js";
 import { FieldsPart } from "./fields.js";
 import { Kept } from "./kept.js";
 import { isMesh, MESH, meshFields } from "./mesh.js";
@@ -61,13 +62,6 @@ const DESIGNS = [
   ["zip", "zip: values side by side"],
   ["latin_hypercube", "Latin hypercube"],
   ["sobol", "Sobol sequence"],
-];
-/** @type {[string, string][]} */
-const ACCURACIES = [
-  ["", "the scenario's"],
-  ["draft", "draft"],
-  ["standard", "standard"],
-  ["reference", "reference"],
 ];
 /** The request that the form begins with, and whether it is continued in place of a proposal. @typedef {{start: any, isGoneOn: boolean}} Begun */
 
@@ -157,7 +151,8 @@ class NewSweep {
     this.#seed = box(String(start.seed ?? 0), { type: "number", min: 0 });
     this.#verify = box(start.verify ? String(start.verify) : "", { placeholder: "such as 0.05 or 10" });
     this.#design = start.design ?? "grid";
-    this.#accuracy = typeof start.set?.accuracy === "string" ? start.set.accuracy : "";
+    const isShown = accuracyWay(start.set?.accuracy) !== undefined;
+    this.#accuracy = new Accuracy(isShown ? start.set?.accuracy : undefined, changed);
     this.#kept = new Kept(start.outputs, changed);
     const axes = Object.entries(start.axes ?? (isGoneOn ? {} : PROPOSED));
     this.#axes = new Rows(
@@ -166,7 +161,7 @@ class NewSweep {
       changed,
     );
     const set = Object.entries(start.set ?? {}).filter(
-      ([name, value]) => !(name === "accuracy" && typeof value === "string") && name !== SURVEY,
+      ([name]) => !(name === "accuracy" && isShown) && name !== SURVEY,
     );
     this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isElsewhere);
     this.#parts = [
@@ -208,15 +203,11 @@ class NewSweep {
   }
 
   #scenarioPart() {
-    const accuracy = choice("Accuracy", ACCURACIES, this.#accuracy, (value) => {
-      this.#accuracy = value;
-      this.#changed();
-    });
     return h(
       "section",
       { class: "panel", "aria-label": "Scenario" },
       this.#source.element,
-      h("div", { class: "controls" }, accuracy, this.#kept.element),
+      h("div", { class: "controls" }, this.#accuracy.element, this.#kept.element),
       h("h2", {}, "Changes to the scenario"),
       this.#changes.element,
       this.#recording.element,
@@ -289,7 +280,8 @@ class NewSweep {
     if (this.#name.value.trim()) body.name = this.#name.value.trim();
     Object.assign(body, this.#source.request);
     const set = Object.fromEntries(this.#changes.named.map((row) => [row.name, changeOf(row)]));
-    if (this.#accuracy) set.accuracy = this.#accuracy;
+    const accuracy = this.#accuracy.value;
+    if (accuracy) set.accuracy = accuracy;
     const stations = pasted(this.#survey.read);
     if (stations) set[SURVEY] = stations;
     if (Object.keys(set).length) body.set = set;

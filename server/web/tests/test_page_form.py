@@ -62,14 +62,20 @@ def test_the_mesh_is_a_rule_a_factor_or_lengths(opened: Opens) -> None:
 
 
 def test_lengths_of_elements_are_in_the_readers_units(opened: Opens) -> None:
-    page = opened("#/new?preset=paper-200m-damped")
+    page = opened(SCENARIO)
     page.get_by_role("button", name="Units: SI. Switch").click()
-    page.locator("summary", has_text=re.compile("^Mesh$")).click()
-    page.get_by_label("Element lengths").select_option("lengths")
-    enter(page.get_by_label("Elements of collar"), "2")
-    until(page, lambda: changes(page).get("mesh", {}).get("collar") == 0.6096)
-    assert set(changes(page)["mesh"]) == {"drillpipe", "tool_joint", "collar", "stabilizer", "bit"}
+    page.locator("summary", has_text=re.compile("^Mesh")).click()
+    expect(page.get_by_label("Elements of collar")).to_have_value("1.64042")
+    enter(page.get_by_label("Elements of collar"), "1.5")
+    until(page, lambda: changes(page) == {"mesh.collar": 0.4572})
     planned(page)
+    # Another way proposes all lengths.
+    page = opened("#/new?preset=paper-200m-damped")
+    page.locator("summary", has_text=re.compile("^Mesh")).click()
+    page.get_by_label("Element lengths").select_option("lengths")
+    until(
+        page, lambda: set(changes(page).get("mesh", {})) == {"drillpipe", "tool_joint", "collar", "stabilizer", "bit"}
+    )
 
 
 def test_the_window_of_the_statistics_settles_or_is_fixed(opened: Opens) -> None:
@@ -167,12 +173,33 @@ def test_histories_in_part_have_fields(opened: Opens) -> None:
     page = opened(SCENARIO)
     page.get_by_label("Kept of each point").select_option("part")
     page.get_by_label("Histories of nodes").fill("49, 2 ft")
-    enter(page.get_by_label("Every how many samples"), "5")
+    enter(page.get_by_label("Every n-th sample"), "5")
     enter(page.get_by_label("Histories to [s]"), "30")
     orbits = {"nodes": [{"node": 49}, {"depth": 0.6096}], "decimation": 5, "window": {"from": 0, "to": 30}}
     until(page, lambda: requested(page).get("outputs") == {"orbits": orbits})
     page.get_by_label("Histories of nodes").fill("bit")
     expect(page.get_by_text("Nodes are numbers or depths")).to_be_visible()
+
+
+@pytest.mark.usefixtures("refused")
+def test_an_accuracy_is_an_allowed_error_or_a_step(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    way = page.get_by_label("Accuracy", exact=True)
+    way.select_option("statistics")
+    enter(page.get_by_label("Allowed error, relative"), "0.02")
+    until(page, lambda: changes(page) == {"accuracy": {"statistics": 0.02}})
+    planned(page)
+    way.select_option("steps")
+    page.get_by_label("Integrator", exact=True).select_option("generalized_alpha")
+    enter(page.get_by_label("Step", exact=True), "0.00025")
+    enter(page.get_by_label("Spectral radius", exact=True), "0.7")
+    steps = {"integrator": "generalized_alpha", "step": 0.00025, "spectral_radius": 0.7}
+    until(page, lambda: changes(page) == {"accuracy": steps})
+    planned(page)
+    # A link with it shows it in the same fields.
+    again = opened("#" + page.url.partition("#")[2])
+    expect(again.get_by_label("Spectral radius", exact=True)).to_have_value("0.7")
+    expect(again.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
 
 
 def test_no_field_of_the_form_is_json(opened: Opens) -> None:

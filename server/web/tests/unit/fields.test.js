@@ -3,6 +3,7 @@
 import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { accuracyWay } from "../../submit/accuracy.js";
 import { nodesOf, nodesText, windowWith } from "../../submit/kept.js";
 import { changedField, memberOf, withMember } from "../../submit/members.js";
 import { isMesh, proposedMesh, wayOf } from "../../submit/mesh.js";
@@ -104,4 +105,14 @@ test("a window without ends is none", () => {
 test("numbers of a list are separated by commas", () => {
   assert.deepEqual(numbersOf("0.5, 1e-3,"), [0.5, 0.001]);
   assert.equal(numbersOf("0.5; 1"), null);
+});
+
+test("an accuracy is a name, an allowed error or a step, and another value stays text", () => {
+  assert.deepEqual(
+    [undefined, "draft", { statistics: 0.01 }, { trajectory: 0.01 }, { integrator: "rk4", step: 1e-4 }].map(
+      accuracyWay,
+    ),
+    ["", "draft", "statistics", "trajectory", "steps"],
+  );
+  assert.deepEqual(["fine", "steps", {}, null].map(accuracyWay), Array(4).fill(undefined));
 });

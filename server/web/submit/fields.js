@@ -131,7 +131,7 @@ export function button(text, onclick, label = text) {
  * A number in the reader's unit.
  * @param {string} label
  * @param {string} name of the quantity
- * @param {number | null | undefined} value served
+ * @param {number | string | null | undefined} value served
  * @param {(value: number | undefined) => void} set is called with undefined only if the number may be left out
  * @param {{min?: number | null, isOptional?: boolean, width?: string}} [options] the least is 0 unless `null` is given
  */
@@ -142,7 +142,9 @@ export function numberBox(label, name, value, set, { min = 0, isOptional = false
     min,
     "aria-label": label,
     style: `width:${width}`,
-    value: value === undefined || value === null ? "" : readersNumber(name, value),
+    // A scenario of the reader's own may have a text with a unit in the place of a number.
+    value: typeof value === "number" ? readersNumber(name, value) : "",
+    placeholder: typeof value === "string" ? value : null,
     onchange: () => {
       if (box.value !== "") set(Number(servedEntry(name, box.value)));
       else if (isOptional) set(undefined);

@@ -89,12 +89,14 @@ export function isTally({ name, values }) {
 }
 
 /**
- * Measured depth of the lower end of each section [m].
+ * Measured depth of the lower end of each section [m]; NaN below a length that is no number.
  * @param {{count?: number, length: number}[]} sections
  */
 export function lowerEnds(sections) {
   let depth = 0;
-  return sections.map(({ count = 1, length }) => (depth += count * length));
+  return sections.map(
+    ({ count = 1, length }) => (depth += typeof length === "number" ? count * length : NaN),
+  );
 }
 
 /** Name of a material; `own` for other numbers, empty if there is none. @param {Material | null | undefined} material */
@@ -118,7 +120,9 @@ export function stringFields(edited) {
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
     texts: (/** @type {any[]} */ rows) =>
-      lowerEnds(rows).map((end) => number(readersNumber("measured_depth", end), 6)),
+      lowerEnds(rows).map((end) =>
+        Number.isFinite(end) ? number(readersNumber("measured_depth", end), 6) : "–",
+      ),
   };
   return TABLES.map((table) =>
     table.path === SECTIONS ? tablePart({ ...table, shows }, edited, below) : tablePart(table, edited),
@@ -187,6 +191,7 @@ function materialLine(path, heading, material, edited) {
 function lengthLine(sections, edited) {
   const length = lowerEnds(sections).at(-1) ?? 0;
   const reach = edited.value("well.survey")?.at(-1)?.measured_depth;
+  if (!Number.isFinite(length)) return h("p", { hidden: true });
   return h(
     "p",
     { class: "small soft" },

@@ -75,6 +75,7 @@ test("the window of the statistics is fixed, settled or the last third", () => {
 
 test("sections end at the sum of the lengths above", () => {
   assert.deepEqual(lowerEnds(SECTIONS), [85.5, 86]);
+  assert.deepEqual(lowerEnds([{ length: "31 ft" }, { length: 2 }]), [NaN, NaN]);
   assert.ok(isTally({ name: "string.gauges", values: "[]" }));
   assert.ok(!isTally({ name: "string.sections", values: "all" }));
 });

@@ -491,7 +491,7 @@ def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
     expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
     # What the scenario has anyway is no change.
     scenario.get_by_role("combobox", name="buoyancy").select_option("auto")
-    scenario.get_by_role("button", name="Take back").first.click()
+    scenario.get_by_role("button", name="Take back", exact=True).first.click()
     until(page, lambda: requested(page).get("set") == {"string.sections[2].outer_diameter": 0.16})
 
 

@@ -73,7 +73,7 @@ const STATES = {
 };
 
 /**
- * Colour of a state in pictures, which is that of its word on the page.
+ * Colour of a state in pictures, which is the one of its mark on the page.
  * @param {string} word
  * @returns {string | undefined} undefined of another word
  */

@@ -1,6 +1,7 @@
 // Rows of the list of sweeps, one of which the keyboard selects.
 
 import { Pace } from "../data/pace.js";
+import { label } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { progressPart, when } from "../ui/progress.js";
 import { link } from "../ui/router.js";
@@ -104,6 +105,15 @@ export class Rows {
   }
 }
 
+/**
+ * Varied parameters of a sweep in words, such as `Flow rate × mud density`; empty if the service names none.
+ * @param {{varied?: string[] | null}} sweep
+ */
+export function variedWords({ varied }) {
+  const words = (varied ?? []).map(label).join(" × ");
+  return words && `${words[0].toUpperCase()}${words.slice(1)}`;
+}
+
 /** @param {Entry} entry */
 function drawRow({ row, sweep, pace }) {
   const title = sweep.name ?? `Sweep ${sweep.id.slice(-8)}`;
@@ -116,6 +126,7 @@ function drawRow({ row, sweep, pace }) {
       "td",
       {},
       h("a", { class: "name", href: link(["sweeps", sweep.id]) }, title),
+      variedWords(sweep) && h("div", { class: "varied" }, variedWords(sweep)),
       h(
         "div",
         { class: "small soft" },

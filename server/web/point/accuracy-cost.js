@@ -1,11 +1,12 @@
-// Panel with what accuracy costs: error against processor time of a point and of the verified points of its sweep.
+// Panel with what accuracy costs: error against processor time of a point, of the verified points of its sweep, and of a cost study.
 
 import { accuracyOf } from "../data/accuracy.js";
-import { get } from "../data/api.js";
+import { get, Problem } from "../data/api.js";
 import { duration } from "../data/units.js";
-import { costsOf, decades, MOST_VERIFIED } from "../data/work-precision.js";
+import { costsOf, decades, MOST_VERIFIED, studyCosts } from "../data/work-precision.js";
 import { canvas, draw, inks, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
+import { studyParts } from "./cost-study.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */
 /** @typedef {import("../data/work-precision.js").Cost} Cost */
@@ -14,13 +15,17 @@ export class AccuracyCost {
   #context;
   #picture = canvas("Error of orbit size against processor time", "cost");
   #caption = h("figcaption", {});
+  #words = h("div", {});
   element = h(
     "section",
     { class: "panel", "aria-label": "What accuracy costs" },
     h("h2", {}, "What accuracy costs"),
     h("figure", {}, this.#picture, this.#caption),
+    this.#words,
   );
 
+  /** Cost study in place of the point's run, requested once. @type {Promise<any> | undefined} */
+  #report;
   /** Other verified points, requested once. @type {Promise<{point: any, error: number | null}[]> | undefined} */
   #others;
 
@@ -37,20 +42,36 @@ export class AccuracyCost {
     const estimated = costsOf([{ point, error: accuracy.estimate }]);
     const itself = costsOf([{ point, error: own }]);
     const others = costsOf(await (this.#others ??= this.#verified()));
-    if (!estimated.length && !itself.length && !others.length) {
-      this.element.hidden = true;
-      return;
-    }
+    const report = point.scenario.cost_study ? await (this.#report ??= this.#studied()) : null;
+    const study = report && studyCosts(report);
+    fill(this.#words, report ? studyParts(report) : null);
+    const isEmpty = ![estimated, itself, others, study?.accuracies ?? [], study?.others ?? []].flat().length;
+    this.element.hidden = isEmpty && !report;
+    /** @type {HTMLElement} */ (this.#picture.parentElement).hidden = isEmpty;
+    if (isEmpty) return;
     const times = plan?.accuracies.filter((/** @type {any} */ one) => one.cpu_time) ?? [];
     const { promised } = accuracy;
-    await this.#plot({ estimated, itself, others, times, promised });
+    await this.#plot({ estimated, itself, others, study, times, promised });
     fill(
       this.#caption,
-      `Filled: measured by verification. Open: estimated from this run. `,
+      study
+        ? `Measured by the cost study of this point, relative to the reference on which two methods agree. `
+        : `Filled: measured by verification. Open: estimated from this run. `,
       promised === null ? "" : "The dashed line is the promise. ",
       times.length > 0 &&
         `Dotted: predicted times of this point, ${times.map((/** @type {any} */ one) => `${one.name} ${duration(one.cpu_time)}`).join(", ")}.`,
     );
+  }
+
+  /** The study; null if its table has expired. @returns {Promise<any>} */
+  async #studied() {
+    const { path, signal } = this.#context;
+    try {
+      return await get(`${path}/cost`, {}, signal);
+    } catch (error) {
+      if (error instanceof Problem && [404, 410].includes(error.status)) return null;
+      throw error;
+    }
   }
 
   /** Other points of the sweep that were verified, with their measured errors. @returns {Promise<{point: any, error: number | null}[]>} */
@@ -69,8 +90,8 @@ export class AccuracyCost {
     );
   }
 
-  /** @param {{estimated: Cost[], itself: Cost[], others: Cost[], times: {name: string, cpu_time: number}[], promised: number | null}} shown */
-  #plot({ estimated, itself, others, times, promised }) {
+  /** @param {{estimated: Cost[], itself: Cost[], others: Cost[], study: ReturnType<typeof studyCosts> | null, times: {name: string, cpu_time: number}[], promised: number | null}} shown */
+  #plot({ estimated, itself, others, study, times, promised }) {
     const { soft } = inks();
     const marks = (/** @type {string} */ name, /** @type {Cost[]} */ costs, /** @type {any} */ marker) => ({
       type: "scatter",
@@ -83,7 +104,8 @@ export class AccuracyCost {
       showlegend: costs.length > 0,
       hovertemplate: "%{text}: %{x:.3~g} s, %{y:.3~g} %<extra></extra>",
     });
-    const all = [...estimated, ...itself, ...others];
+    const [accuracies, rows] = [study?.accuracies ?? [], study?.others ?? []];
+    const all = [...estimated, ...itself, ...others, ...accuracies, ...rows];
     const x = decades([...all.map(({ cpu }) => cpu), ...times.map(({ cpu_time }) => cpu_time)]);
     const y = decades([...all.map(({ error }) => 100 * error), ...(promised ? [100 * promised] : [])]);
     const line = (/** @type {any} */ ends, /** @type {string} */ dash) => ({
@@ -112,13 +134,15 @@ export class AccuracyCost {
       marks("this point, estimated", estimated, { color: LINES[0], symbol: "circle-open" }),
       marks("this point, measured", itself, { color: LINES[0] }),
       marks("verified points of the sweep", others, { color: LINES[1] }),
+      marks("accuracies, by the study", accuracies, { color: LINES[2], symbol: "diamond" }),
+      marks("other methods, by the study", rows, { color: soft, size: 7 }),
     ];
     const layout = {
       showlegend: true,
       shapes,
       annotations,
       xaxis: { title: "processor time [s]", type: "log", range: x },
-      yaxis: { title: "error of orbit size [%]", type: "log", range: y },
+      yaxis: { title: `${study?.measure ?? "error of orbit size"} [%]`, type: "log", range: y },
     };
     return draw(this.#picture, traces, layout, this.#context.signal);
   }

@@ -1,5 +1,6 @@
 // Quantities over depth, side by side with one depth cursor.
 
+import { roomyRange } from "../data/columns.js";
 import { label, meaning, say, shown, title, unit } from "../data/units.js";
 import { DepthCursor, nearest } from "../draw/depth-cursor.js";
 import { canvas, draw, inks, LINES } from "../draw/plots.js";
@@ -66,6 +67,8 @@ export function overDepth(name, table) {
   };
 }
 
+/** Room of an axis beyond its values on either side, as a part of their range, so that no curve lies on the frame. */
+const ROOM = 0.04;
 /** Width that a profile needs for its name and its ticks [pixels]. */
 const LEAST_WIDTH = 150;
 
@@ -114,6 +117,15 @@ export async function drawProfiles(place, names, points, signal) {
       ];
     }),
   );
+  const rangeOfAxis = (/** @type {string} */ axis) =>
+    roomyRange(
+      traces.flatMap((trace) => (trace.xaxis === axis ? trace.x : [])),
+      ROOM,
+    );
+  const depths = roomyRange(
+    traces.flatMap(({ y }) => y),
+    ROOM,
+  );
   const width = 1 / names.length;
   const gap = Math.min(0.03, width / 6);
   const layout = {
@@ -123,7 +135,7 @@ export async function drawProfiles(place, names, points, signal) {
     yaxis: {
       title: title("measured_depth"),
       quantity: "measured_depth",
-      autorange: "reversed",
+      ...(depths ? { range: depths.toReversed() } : { autorange: "reversed" }),
       showspikes: true,
       spikemode: "across",
       spikesnap: "cursor",
@@ -144,6 +156,7 @@ export async function drawProfiles(place, names, points, signal) {
           ],
           anchor: "y",
           nticks: 5,
+          range: rangeOfAxis(`x${column ? column + 1 : ""}`),
         },
       ]),
     ),

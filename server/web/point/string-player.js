@@ -1,6 +1,6 @@
 // Strings moving in their holes, played from snapshots on one clock: the string of a point, or several side by side.
 
-import { frames, valueAt } from "../data/snapshots.js";
+import { streamFrames, valueAt } from "../data/snapshots.js";
 import { magnified, MAGNIFICATIONS, meansOf, suitedMagnification } from "../data/mean-motion.js";
 import { kindsOf, partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
@@ -22,9 +22,14 @@ const REST_MS = 200;
 /** @typedef {import("./player-choices.js").Strings} Strings */
 
 /**
- * One string with its picture.
- * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, means: import("../data/mean-motion.js").Means | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
+ * One string with its picture; `isWhole` is true once all snapshots of the window have arrived.
+ * @typedef {Strings[number] & {geometry: ReturnType<typeof nodeFrames>, kinds: import("../data/string-parts.js").Kind[], motion: Frames | null, isWhole: boolean, means: import("../data/mean-motion.js").Means | null, colours: import("./string-colours.js").Colours, scene: import("../draw/string-scene.js").StringScene}} Actor
  */
+
+/** Time of the last snapshot [s]. @param {Frames} motion */
+function lastTime({ first, count, interval }) {
+  return first + (count - 1) * interval;
+}
 
 export class StringPlayer {
   #choices;
@@ -41,6 +46,7 @@ export class StringPlayer {
   #caption = h("figcaption", {});
   #play = h("button", { class: "main", onclick: () => this.#setPlaying(!this.#isPlaying) }, "Play");
   #clock = h("output", { class: "number" });
+  #arrival = h("span", { class: "small soft", role: "status" });
   #slider = h("input", {
     type: "range",
     "aria-label": "Time",
@@ -53,6 +59,8 @@ export class StringPlayer {
   });
   #isPlaying = false;
   #time = 0;
+  /** Time of the link, until its snapshots have arrived [s]. @type {number | null} */
+  #awaited = null;
   /** Time of the last frame that was played [ms]. */
   #last = 0;
   #generation = 0;
@@ -73,6 +81,7 @@ export class StringPlayer {
     this.#keepTime = debounced(
       () =>
         this.#isPlaying ||
+        this.#awaited !== null ||
         keep({ time: this.#time > this.#first ? String(Number(this.#time.toFixed(4))) : null }),
       REST_MS,
       signal,
@@ -82,6 +91,7 @@ export class StringPlayer {
       geometry: geometries[order],
       kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
       motion: null,
+      isWhole: false,
       means: null,
       colours: { value: () => 0, range: [0, 1] },
       scene: this.#view.scene(
@@ -98,7 +108,7 @@ export class StringPlayer {
         "div",
         { class: "panel" },
         h("div", { class: strings.length > 1 ? "half" : "" }, this.#panels()),
-        h("div", { class: "controls player" }, this.#play, this.#slider, this.#clock),
+        h("div", { class: "controls player" }, this.#play, this.#slider, this.#clock, this.#arrival),
         this.#legend,
         this.#caption,
       ),
@@ -130,8 +140,15 @@ export class StringPlayer {
     return Math.min(...this.#moving.map((motion) => motion.first));
   }
 
+  /** Time up to which the strings can be shown: all of them while snapshots are still to come, else the longest [s]. */
   get #end() {
-    return Math.max(...this.#moving.map((motion) => motion.first + (motion.count - 1) * motion.interval));
+    const arriving = this.#actors.flatMap(({ motion, isWhole }) => (motion && !isWhole ? [motion] : []));
+    if (arriving.length) return Math.min(...arriving.map(lastTime));
+    return Math.max(...this.#moving.map(lastTime));
+  }
+
+  get #isArriving() {
+    return this.#actors.some(({ motion, isWhole }) => motion && !isWhole);
   }
 
   #drawControls() {
@@ -245,33 +262,75 @@ export class StringPlayer {
     this.#wrong.textContent = "";
     this.#drawControls();
     this.#setPlaying(false);
-    const { isStriped } = this.#choices;
-    const names = [
-      "u",
-      "v",
-      ...(this.#choices.has("normal_force") ? ["normal_force"] : []),
-      ...(isStriped ? ["theta_z"] : []),
-    ];
-    const taken = await Promise.all(
-      this.#actors.map(({ context, there }) => frames(context, names, span, there.nodes)),
+    const asked = Number(query.get("time") ?? NaN);
+    this.#awaited = Number.isFinite(asked) ? asked : null;
+    /** @type {(Frames | undefined)[]} */
+    const arrived = this.#actors.map(() => undefined);
+    let painted = Promise.resolve();
+    const take = (
+      /** @type {number} */ order,
+      /** @type {Frames} */ motion,
+      /** @type {boolean} */ isWhole,
+    ) => {
+      if (mine !== this.#generation) return;
+      arrived[order] = motion;
+      this.#actors[order].isWhole = isWhole;
+      if (arrived.includes(undefined)) return;
+      painted = painted.then(() => this.#take(/** @type {Frames[]} */ (arrived)));
+      // A failure is met below.
+      painted.catch(() => {});
+    };
+    this.#actors.forEach((actor) => Object.assign(actor, { motion: null, isWhole: false }));
+    await Promise.all(
+      this.#actors.map(({ context, there }, order) =>
+        streamFrames(context, this.#streamed, span, there, (motion, isWhole) => take(order, motion, isWhole)),
+      ),
     );
-    if (mine !== this.#generation) return;
-    const still = this.#actors.find((_, order) => taken[order].count < 2);
+    await painted;
+    if (mine !== this.#generation || this.#moving.length < this.#actors.length) return;
+    this.#drawControls();
+    await this.#onLoad(this.#actors, this.span);
+  }
+
+  /** Quantities that the picture needs, the one of the colours among them. */
+  get #streamed() {
+    const { isStriped, colour } = this.#choices;
+    const [name, source] = colour;
+    return [
+      ...new Set([
+        "u",
+        "v",
+        ...(this.#choices.has("normal_force") ? ["normal_force"] : []),
+        ...(isStriped ? ["theta_z"] : []),
+        ...(source === "snapshots" ? [name] : []),
+      ]),
+    ];
+  }
+
+  /** Shows snapshots that have arrived of all strings, on longer clocks each time. @param {Frames[]} arrived */
+  async #take(arrived) {
+    const still = this.#actors.find(({ isWhole }, order) => arrived[order].count < 2 && isWhole);
     if (still) {
       this.#wrong.textContent = `There are no two snapshots${still.heading && ` of ${still.heading}`} in this window; the next are ${say("time", still.there.interval)} apart.`;
       return;
     }
+    const isFirst = !this.#moving.length;
     this.#actors.forEach((actor, order) => {
-      actor.motion = taken[order];
-      actor.means = meansOf(taken[order]);
+      // A colour that was chosen meanwhile has the snapshots of the whole window.
+      actor.motion = { ...arrived[order], columns: { ...actor.motion?.columns, ...arrived[order].columns } };
+      actor.means = meansOf(arrived[order]);
     });
-    this.#drawControls();
+    if (isFirst) this.#drawControls();
     this.#slider.min = String(this.#first);
     this.#slider.max = String(this.#end);
-    await this.#recolour();
-    const asked = Number(query.get("time") ?? NaN);
-    this.#go(Number.isFinite(asked) ? asked : this.#first);
-    await this.#onLoad(this.#actors, this.span);
+    fill(this.#arrival, this.#isArriving && `up to ${say("time", this.span.to)} on the way`);
+    const colouring = this.#recolour();
+    const isReached = this.#awaited !== null && (this.#awaited <= this.#end || !this.#isArriving);
+    if (isReached) this.#go(/** @type {number} */ (this.#awaited));
+    else if (isFirst) this.#go(this.#first);
+    else this.#go(this.#time);
+    if (isReached) this.#awaited = null;
+    await colouring;
   }
 
   async #recolour() {
@@ -368,6 +427,7 @@ export class StringPlayer {
 
   /** Stops at a time. @param {number} time [s] */
   stopAt(time) {
+    this.#awaited = null;
     this.#setPlaying(false);
     this.#go(time);
   }
@@ -392,7 +452,8 @@ export class StringPlayer {
       this.#keepTime();
       return;
     }
-    if (this.#time >= this.#end - 1e-9) this.#time = this.#first;
+    this.#awaited = null;
+    if (this.#time >= this.#end - 1e-9 && !this.#isArriving) this.#time = this.#first;
     this.#last = performance.now();
     requestAnimationFrame((now) => this.#step(now));
   }
@@ -403,7 +464,8 @@ export class StringPlayer {
     const next = this.#time + ((now - this.#last) / 1000) * this.#choices.speed;
     this.#last = now;
     this.#go(next);
-    if (next >= this.#end) this.#setPlaying(false);
+    // What has arrived may end before the window does.
+    if (next >= this.#end && !this.#isArriving) this.#setPlaying(false);
     else requestAnimationFrame((later) => this.#step(later));
   }
 

@@ -1,17 +1,27 @@
-// What a new sweep records: nodes, windows of spectra, and snapshots of the string in motion.
+// What a new sweep records: nodes, windows of statistics and of spectra, and snapshots of the string in motion.
 
 import { settings } from "../data/settings.js";
 import { bytes, inputUnit } from "../data/units.js";
-import { fill, h } from "../ui/dom.js";
-import { readersNumber, servedEntry } from "./entries.js";
+import { choice, fill, h } from "../ui/dom.js";
+import { button, group, isChangedIn, numberBox } from "./fields.js";
+import { changedField } from "./members.js";
 import { read } from "./values.js";
 
 /** Fields of the scenario that this part shows. */
 const [NODES, WINDOWS, SNAPSHOTS] = ["recording.nodes", "recording.spectrum_windows", "recording.snapshots"];
+/** Window of the statistics: a fixed one, `settled`, or none for the last third of the run. */
+const ORBIT_WINDOW = "recording.orbit_window";
 /** Rate of snapshots that is proposed [Hz]. */
 const PROPOSED_HZ = 25;
 /** Size of a node in a snapshot before compression: time and number in eight bytes each, seven quantities in four. */
 const NODE_BYTES = 8 + 8 + 7 * 4;
+
+/** Ways to choose the window of the statistics. @type {[string, string][]} */
+const WAYS = [
+  ["last", "the last third of the run"],
+  ["settled", "settled: the run ends once the statistics agree"],
+  ["fixed", "fixed"],
+];
 
 /** @typedef {{node: number} | {depth: number}} Node */
 /** @typedef {{from: number, to: number}} Window */
@@ -26,7 +36,15 @@ export function isRecording({ name, values }) {
   if (name === NODES) return isList((one) => typeof one?.depth === "number" || typeof one?.node === "number");
   if (name === WINDOWS)
     return value === null || isList((one) => typeof one?.from === "number" && typeof one?.to === "number");
+  if (name === ORBIT_WINDOW) return wayOf(value) !== undefined;
   return name === SNAPSHOTS && (value === null || typeof value?.rate_hz === "number");
+}
+
+/** Way in which the window of the statistics is chosen; undefined for a value that is none. @param {any} window */
+export function wayOf(window) {
+  if (window === null || window === undefined) return "last";
+  if (window === "settled") return "settled";
+  return typeof window.from === "number" && typeof window.to === "number" ? "fixed" : undefined;
 }
 
 /**
@@ -50,7 +68,7 @@ export class Recording {
     "div",
     {},
     this.#motion,
-    h("details", {}, h("summary", {}, "Recorded nodes, windows of spectra"), this.#lists),
+    h("details", {}, h("summary", {}, "Recorded nodes, windows of statistics and spectra"), this.#lists),
   );
 
   /** @param {import("./rows.js").Rows} changes @param {AbortSignal} signal of the view */
@@ -94,28 +112,21 @@ export class Recording {
     fill(
       this.#lists,
       this.#part("Nodes", NODES, this.#nodes()),
+      this.#part("Window of the statistics", ORBIT_WINDOW, this.#orbitWindow()),
       this.#part("Windows of spectra", WINDOWS, this.#windows()),
     );
   }
 
   /** @param {string} heading @param {string} name @param {HTMLElement[]} lines */
   #part(heading, name, lines) {
-    const back = h(
-      "button",
-      { type: "button", class: "plain small", onclick: () => this.#set(name, undefined) },
-      "Take back",
-    );
-    return h(
-      "fieldset",
-      { class: "list", "data-pointer": `/set/${name}` },
-      h("legend", {}, heading, " ", this.#changes.get(name) !== undefined && back),
-      lines,
-    );
-  }
-
-  /** @param {string} text @param {() => void} onclick */
-  #button(text, onclick, label = text) {
-    return h("button", { type: "button", "aria-label": label, onclick }, text);
+    const edited = {
+      isChanged: (/** @type {string} */ path) => isChangedIn(this.#changes, path),
+      set: (/** @type {string} */ path, /** @type {undefined} */ value) => {
+        this.#changes.put(path, value);
+        this.draw();
+      },
+    };
+    return group(heading, name, edited, lines);
   }
 
   /**
@@ -123,19 +134,10 @@ export class Recording {
    * @param {string} label
    * @param {string} name of the quantity
    * @param {number | undefined} value served
-   * @param {(value: number) => void} set is called for numbers alone
+   * @param {(value: number) => void} set
    */
   #number(label, name, value, set) {
-    const box = h("input", {
-      type: "number",
-      step: "any",
-      min: 0,
-      "aria-label": label,
-      style: "width:7rem",
-      value: value === undefined ? "" : readersNumber(name, value),
-      onchange: () => box.value !== "" && set(Number(servedEntry(name, box.value))),
-    });
-    return box;
+    return numberBox(label, name, value, (entered) => entered !== undefined && set(entered));
   }
 
   #nodes() {
@@ -170,10 +172,57 @@ export class Recording {
           NODES,
           nodes.filter((_, index) => index !== at),
         );
-      return h("div", { class: "line" }, kind, box, this.#button("✕", remove, `Remove node ${at + 1}`));
+      return h("div", { class: "line" }, kind, box, button("✕", remove, `Remove node ${at + 1}`));
     });
     const deepest = Math.max(0, ...nodes.map((node) => ("depth" in node ? node.depth : 0)));
-    return [...lines, this.#button("Add a node", () => this.#set(NODES, [...nodes, { depth: deepest }]))];
+    return [...lines, button("Add a node", () => this.#set(NODES, [...nodes, { depth: deepest }]))];
+  }
+
+  /** Simulated time as it is changed [s]. */
+  get #duration() {
+    return Number(this.#changes.get("duration") ?? this.#scenario.duration);
+  }
+
+  /** Window of the statistics as it is changed; a fixed one of the scenario does not hold for another duration. */
+  get #statistics() {
+    const isOther =
+      this.#changes.get(ORBIT_WINDOW) === undefined && this.#changes.get("duration") !== undefined;
+    const given = changedField(this.#changes, ORBIT_WINDOW, this.#scenario.recording.orbit_window);
+    return isOther && wayOf(given) === "fixed" && !this.#changes.within(ORBIT_WINDOW).length ? null : given;
+  }
+
+  #orbitWindow() {
+    const window = this.#statistics;
+    const way = wayOf(window) ?? "last";
+    const duration = this.#duration;
+    const fixed = { from: Number((duration / 2).toPrecision(6)), to: duration };
+    const choose = (/** @type {string} */ chosen) =>
+      this.#put(ORBIT_WINDOW, chosen === "fixed" ? fixed : chosen === "settled" ? "settled" : null);
+    const ways = choice("Window", WAYS, way, choose);
+    if (way === "settled")
+      return [
+        ways,
+        h(
+          "p",
+          { class: "small soft" },
+          `It runs in blocks of 10 s, for ${duration} s at most, the scenario's duration; usual 300 s.`,
+        ),
+      ];
+    if (way === "last") return [ways];
+    const end = (/** @type {"from" | "to"} */ name) =>
+      this.#number(`Statistics ${name} [s]`, "time", window[name], (value) =>
+        this.#put(ORBIT_WINDOW, { ...window, [name]: value }),
+      );
+    return [ways, h("div", { class: "line" }, end("from"), " to ", end("to"), " s")];
+  }
+
+  /** Changes a field in whole, and shows it. @param {string} name @param {unknown} value */
+  #put(name, value) {
+    const given = this.#scenario.recording[name.slice("recording.".length)] ?? null;
+    const isGiven =
+      JSON.stringify(value) === JSON.stringify(given) && this.#changes.get("duration") === undefined;
+    this.#changes.put(name, isGiven ? undefined : value);
+    this.draw();
   }
 
   #windows() {
@@ -201,17 +250,17 @@ export class Recording {
         " to ",
         end("to"),
         " s ",
-        this.#button("✕", remove, `Remove window ${at + 1}`),
+        button("✕", remove, `Remove window ${at + 1}`),
       );
     });
     const text = given
       ? "No spectra."
       : "The window of the statistics, or the last sixth of a run of fixed duration.";
-    const last = Number(this.#changes.get("duration") ?? this.#scenario.duration);
+    const last = this.#duration;
     const next = { from: Number((last / 2).toPrecision(6)), to: last };
     return [
       ...(windows.length ? lines : [h("p", { class: "small soft" }, text)]),
-      this.#button("Add a window", () => this.#set(WINDOWS, [...windows, next])),
+      button("Add a window", () => this.#set(WINDOWS, [...windows, next])),
     ];
   }
 
@@ -237,7 +286,7 @@ export class Recording {
       this.#number(`Snapshots ${name} [s]`, "time", window?.[name] ?? usual, (value) =>
         put({ window: { from: window?.from ?? 0, to: window?.to ?? usual, [name]: value } }),
       );
-    const duration = Number(this.#changes.get("duration") ?? this.#scenario.duration);
+    const duration = this.#duration;
     return [
       tick,
       h(

@@ -61,6 +61,20 @@ export class Rows {
     this.#changed();
   }
 
+  /** Names of the changes within a field, such as `string.sections[0].length` within `string.sections`. @param {string} path */
+  within(path) {
+    return this.named
+      .map(({ name }) => name)
+      .filter((name) => name.startsWith(`${path}.`) || name.startsWith(`${path}[`));
+  }
+
+  /** Sets a field in whole, in place of the changes within it. @param {string} path @param {unknown} value undefined removes its row */
+  put(path, value) {
+    const within = this.within(path);
+    this.#rows = this.#rows.filter(({ name }) => !within.includes(name));
+    this.set(path, value);
+  }
+
   /** Shows the values in the units that now hold. */
   convert() {
     for (const row of this.#rows) delete row.typed;

@@ -2,10 +2,12 @@
 
 import { get } from "../data/api.js";
 import { settings } from "../data/settings.js";
-import { inputUnit, number, say, servedUnit } from "../data/units.js";
+import { inputUnit, number, servedUnit } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { readersNumber, servedEntry } from "./entries.js";
+import { memberOf, withMember } from "./members.js";
+import { numbersBox, tablePart } from "./table.js";
 
 /** Fields that the form for new sweeps has elsewhere. */
 const ELSEWHERE = [
@@ -15,11 +17,37 @@ const ELSEWHERE = [
   "recording.nodes",
   "recording.spectrum_windows",
   "recording.snapshots",
+  "recording.orbit_window",
+  "recording.outputs",
+  "mesh",
+  "string.sections",
+  "string.gauges",
+  "string.unbalance",
 ];
 const REFERENCE = "#/components/schemas/";
 /** Characters of a line of a text, and the most lines that are shown at once. */
 const LINE = 44,
   MOST_LINES = 5;
+
+/** Sections and rows that a scenario does without, as they are proposed: usual values in served units. @type {Record<string, any>} */
+const PROPOSED = {
+  mud: { density: 1200, flow_rate: 0.02, yield_stress: 0.29, consistency: 0.07, flow_index: 0.55 },
+  "cost_study.methods": { integrator: "esdirk4", steps: [0.001, 0.0005, 0.00025] },
+  "cost_study.reference.methods": { integrator: "esdirk4", step: 0.000125 },
+};
+
+/** Sections of a scenario that may be none. */
+const SECTIONS = ["mud", "cost_study"];
+
+/** True of a change that gives a section, which the form shows by its fields. @param {import("./rows.js").Row} row */
+export function isSection({ name, values }) {
+  return SECTIONS.includes(name) && isObject(read(values));
+}
+
+/** @param {unknown} value */
+function isObject(value) {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
 
 /**
  * @typedef {object} Changes
@@ -32,6 +60,8 @@ export class ScenarioForm {
   #changes;
   #signal;
   #body = h("div", {});
+  /** Names of the sections that are given here, of which there is no other row. */
+  #given = h("span", { class: "small" });
   /** @type {any} */
   #scenario = null;
   /** @type {Record<string, any> | undefined} */
@@ -46,14 +76,22 @@ export class ScenarioForm {
     this.element = h(
       "details",
       { class: "schema", ontoggle: toggled },
-      h("summary", {}, "All fields, with units, limits and help"),
+      h("summary", {}, "All fields, with units, limits and help", this.#given),
       this.#body,
     );
+    this.mark();
+  }
+
+  /** Names in the summary the sections that are given here. */
+  mark() {
+    const given = SECTIONS.filter((path) => isObject(this.#changes.get(path))).map(last);
+    this.#given.textContent = given.length ? ` (${given.join(", ")} given)` : "";
   }
 
   /** Shows the fields of a scenario, or none. @param {any} scenario */
   show(scenario) {
     this.#scenario = scenario;
+    this.mark();
     attend(this.#draw(), this.#signal);
   }
 
@@ -92,8 +130,15 @@ export class ScenarioForm {
       : schema;
   }
 
-  /** The fields of an object, sections within it folded. @param {any} schema @param {any} value @param {string} path @returns {HTMLElement[]} */
-  #section(schema, value, path) {
+  /**
+   * The fields of an object, sections within it folded.
+   * @param {any} schema
+   * @param {any} value
+   * @param {string} path
+   * @param {Changes} changes
+   * @returns {HTMLElement[]}
+   */
+  #section(schema, value, path, changes = this.#changes) {
     return Object.entries(schema.properties ?? {}).flatMap(([name, given]) => {
       const at = path ? `${path}.${name}` : name;
       // A section that a scenario leaves out has its defaults, unless it may be none.
@@ -101,29 +146,94 @@ export class ScenarioForm {
       const resolved = this.#resolved(given);
       return ELSEWHERE.includes(at)
         ? []
-        : [this.#part(resolved, value?.[name] ?? (resolved.properties ? absent : undefined), at)];
+        : [this.#part(resolved, value?.[name] ?? (resolved.properties ? absent : undefined), at, changes)];
     });
   }
 
-  /** @param {any} schema @param {any} value @param {string} path @returns {HTMLElement} */
-  #part(schema, value, path) {
-    const isObject = schema.properties && value !== null && value !== undefined;
-    if (isObject) return folded(path, schema.description, () => this.#section(schema, value, path));
+  /** @param {any} schema @param {any} value @param {string} path @param {Changes} changes @returns {HTMLElement} */
+  #part(schema, value, path, changes) {
+    if (schema.properties && isObject(value))
+      return folded(path, schema.description, () => this.#section(schema, value, path, changes));
+    if (schema.properties) return this.#absent(schema, path, changes);
     const item = schema.items && this.#resolved(schema.items);
-    if (!item?.properties || !Array.isArray(value) || !value.length)
-      return field(schema, value, path, this.#changes, this.#signal);
-    const entryOf = (/** @type {any} */ entry, /** @type {string} */ at) =>
-      folded(
-        at,
-        [entry.kind, entry.measured_depth !== undefined && say("measured_depth", entry.measured_depth)]
-          .filter(Boolean)
-          .join(", "),
-        () => this.#section(item, entry, at),
-      );
-    return folded(path, schema.description, () =>
-      value.map((entry, index) => entryOf(entry, `${path}[${index}]`)),
-    );
+    if (item?.properties) return this.#rows(item, schema.description, value, path, changes);
+    return field(schema, item, value, path, changes, this.#signal);
   }
+
+  /** A section that the scenario does without, with a tick that gives it. @param {any} schema @param {string} path @param {Changes} changes */
+  #absent(schema, path, changes) {
+    const body = h("div", {});
+    const draw = () => {
+      const isGiven = isObject(changes.get(path));
+      box.checked = isGiven;
+      this.mark();
+      fill(body, isGiven && this.#section(schema, undefined, path, memberChanges(changes, path)));
+    };
+    const box = h("input", {
+      type: "checkbox",
+      onchange: () => {
+        changes.set(path, box.checked ? (PROPOSED[path] ?? {}) : undefined);
+        draw();
+      },
+    });
+    return folded(path, schema.description, () => {
+      draw();
+      return [h("label", { class: "tick" }, box, `Give ${last(path)}`), body];
+    });
+  }
+
+  /** Objects as rows of a table. @param {any} item schema of one @param {string} help @param {any} value @param {string} path @param {Changes} changes */
+  #rows(item, help, value, path, changes) {
+    const body = h("div", {});
+    const now = () => changes.get(path) ?? value ?? [];
+    const set = (/** @type {string} */ at, /** @type {unknown} */ rows) => {
+      changes.set(at, rows);
+      draw();
+    };
+    const edited = {
+      value: now,
+      given: () => value,
+      isChanged: () => changes.get(path) !== undefined,
+      set,
+      setMember: (/** @type {string} */ at, /** @type {string} */ name, /** @type {unknown} */ member) =>
+        set(at, withMember(now(), name, member)),
+    };
+    const columns = Object.entries(item.properties).map(([name, given]) =>
+      columnOf(name, this.#resolved(given), item.required?.includes(name)),
+    );
+    const draw = () =>
+      fill(
+        body,
+        tablePart(
+          { path, heading: heading(path), one: "row", columns, proposed: PROPOSED[path] ?? {} },
+          edited,
+        ),
+      );
+    return folded(path, help, () => {
+      draw();
+      return [body];
+    });
+  }
+}
+
+/** Changes of the members of a section that is given in whole. @param {Changes} changes @param {string} whole @returns {Changes} */
+function memberChanges(changes, whole) {
+  return {
+    get: (path) => memberOf(changes.get(whole), path.slice(whole.length)),
+    set: (path, value) =>
+      changes.set(whole, withMember(changes.get(whole) ?? {}, path.slice(whole.length), value)),
+  };
+}
+
+/** Column of a member of rows. @param {string} name @param {any} schema @param {boolean} isRequired @returns {import("./table.js").Column} */
+function columnOf(name, schema, isRequired) {
+  return {
+    name,
+    text: heading(name),
+    words: wordsOf(schema) ?? undefined,
+    isList: [schema.type].flat().includes("array"),
+    isOptional: !isRequired,
+  };
 }
 
 /** @param {string} path @param {string} help @param {() => (HTMLElement | HTMLElement[])[]} make when it is opened first */
@@ -137,8 +247,15 @@ function folded(path, help, make) {
   return details;
 }
 
-/** @param {any} schema @param {any} value of the scenario @param {string} path @param {Changes} changes @param {AbortSignal} signal of the view */
-function field(schema, value, path, changes, signal) {
+/**
+ * @param {any} schema
+ * @param {any} item schema of the entries of a list
+ * @param {any} value of the scenario
+ * @param {string} path
+ * @param {Changes} changes
+ * @param {AbortSignal} signal of the view
+ */
+function field(schema, item, value, path, changes, signal) {
   const now = () => {
     const changed = changes.get(path);
     return changed === undefined ? value : changed;
@@ -181,11 +298,13 @@ function field(schema, value, path, changes, signal) {
   };
   const help = `help-${path}`;
   const made = () => {
-    const input = inputOf(schema, path, now(), { "aria-describedby": help }, set);
+    const input = inputOf(schema, item, path, now(), { "aria-describedby": help }, set);
     mark();
     const unit = inputUnit(path).symbol;
+    // Ticks have labels of their own.
+    const tag = item && wordsOf(item) ? "div" : "label";
     return [
-      h("label", { class: "field" }, h("span", {}, `${last(path)}${unit ? ` [${unit}]` : ""}`), input),
+      h(tag, { class: "field" }, h("span", {}, `${last(path)}${unit ? ` [${unit}]` : ""}`), input),
       hint,
       back,
       h("p", { class: "small soft", id: help }, plain(schema.description ?? "")),
@@ -197,15 +316,16 @@ function field(schema, value, path, changes, signal) {
 }
 
 /**
- * An input for a value: a choice of words, a number in the reader's unit, or a text.
+ * An input for a value: a choice of words, a number in the reader's unit, a list of either, or a text.
  * @param {any} schema
+ * @param {any} item schema of the entries of a list
  * @param {string} path
  * @param {unknown} value
  * @param {Record<string, string>} attributes
  * @param {(entered: unknown) => void} set
  * @returns {HTMLElement}
  */
-function inputOf(schema, path, value, attributes, set) {
+function inputOf(schema, item, path, value, attributes, set) {
   const words = wordsOf(schema);
   if (schema.type === "boolean" || words) {
     const options = words ?? ["true", "false"];
@@ -219,6 +339,9 @@ function inputOf(schema, path, value, attributes, set) {
     );
     return select;
   }
+  if (item && wordsOf(item))
+    return wordTicks({ ...attributes, "aria-label": last(path) }, wordsOf(item) ?? [], value, set);
+  if (item && isNumber(item)) return numbersBox(attributes, Array.isArray(value) ? value : [], set);
   if (isNumber(schema)) {
     const box = h("input", {
       ...attributes,
@@ -241,6 +364,24 @@ function inputOf(schema, path, value, attributes, set) {
     oninput: () => set(read(box.value)),
   });
   return box;
+}
+
+/** Ticks of several words; none chosen stands for the usual ones. @param {Record<string, string>} attributes @param {string[]} words @param {unknown} value @param {(entered: unknown) => void} set */
+function wordTicks(attributes, words, value, set) {
+  const chosen = new Set(Array.isArray(value) ? value : []);
+  const ticks = words.map((word) => {
+    const box = h("input", {
+      type: "checkbox",
+      checked: chosen.has(word),
+      onchange: () => {
+        if (box.checked) chosen.add(word);
+        else chosen.delete(word);
+        set(chosen.size ? words.filter((one) => chosen.has(one)) : undefined);
+      },
+    });
+    return h("label", { class: "tick" }, box, word.replaceAll("_", " "));
+  });
+  return h("span", { ...attributes, role: "group", class: "line" }, ticks);
 }
 
 /** Whether a field may be `null`. @param {any} schema */
@@ -285,6 +426,12 @@ function last(path) {
     .replace(/\[(\d+)\]$/, (_, index) => ` ${Number(index) + 1}`)
     .replaceAll("_", " ")
     .replace(/ (hz|rpm|deg)$/, "");
+}
+
+/** @param {string} path */
+function heading(path) {
+  const words = last(path);
+  return `${words[0].toUpperCase()}${words.slice(1)}`;
 }
 
 /** A description without its marks. @param {string} text */

@@ -143,6 +143,7 @@ export class Source {
   /** Draws the fields of the scenario, unless they are shown. */
   async drawFields() {
     const source = this.#preset || this.#text.value;
+    this.#fields.mark();
     if (source === this.#fieldsOf) return;
     this.#fieldsOf = source;
     const scenario = this.#preset ? await this.#scenarioOf(this.#preset) : object(source);

@@ -9,14 +9,20 @@ import { attend } from "../ui/notices.js";
 import { go, held, hold, keep, link } from "../ui/router.js";
 import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { snippets } from "../ui/snippets.js";
+import { Accuracy, accuracyWay } from "./accuracy.js";
+import { FieldsPart } from "./fields.js";
+import { Kept } from "./kept.js";
+import { isMesh, MESH, meshFields } from "./mesh.js";
 import { plannedPart } from "./plan.js";
 import { Preview } from "./preview.js";
 import { field, mark } from "./problems.js";
 import { isRecording, Recording } from "./recording.js";
 import { Rows } from "./rows.js";
+import { isSection } from "./scenario-form.js";
 import { submitLines } from "./snippets.js";
 import { Source } from "./source.js";
 import { surveyField } from "./survey-field.js";
+import { isTally, STRING, stringFields } from "./tally.js";
 import { changeOf, object, span, Unreadable, written } from "./values.js";
 
 /** Characters of a request that a link may hold; a longer one is held beside it. */
@@ -41,8 +47,6 @@ const FIELDS = [
   "seed",
   "verify",
 ];
-/** Choice that keeps the outputs of the request that the form begins with, if they are given in parts, for which there are no fields. */
-const PART = "part";
 const DRAWN = ["latin_hypercube", "sobol"];
 /** Parameters that are proposed. */
 const PROPOSED = {
@@ -59,21 +63,6 @@ const DESIGNS = [
   ["latin_hypercube", "Latin hypercube"],
   ["sobol", "Sobol sequence"],
 ];
-/** @type {[string, string][]} */
-const ACCURACIES = [
-  ["", "the scenario's"],
-  ["draft", "draft"],
-  ["standard", "standard"],
-  ["reference", "reference"],
-];
-/** @type {[string, string][]} */
-const OUTPUTS = [
-  ["", "the scenario's"],
-  ["full", "everything, with histories"],
-  ["spectra", "spectra, no histories"],
-  ["summary", "its row of the table only"],
-];
-
 /** The request that the form begins with, and whether it is continued in place of a proposal. @typedef {{start: any, isGoneOn: boolean}} Begun */
 
 /** @type {import("../ui/router.js").View} */
@@ -118,7 +107,6 @@ export async function show(main, route, signal) {
 }
 
 class NewSweep {
-  #start;
   #carried;
   #signal;
   #name;
@@ -129,11 +117,13 @@ class NewSweep {
   #axes;
   #changes;
   #recording;
+  /** Folded parts with fields in whole. */
+  #parts;
   #survey;
   #source;
   #design;
   #accuracy;
-  #outputs;
+  #kept;
   #rested;
   #isSent = false;
   /** Numbers the plans, so that an older one is dropped. */
@@ -147,7 +137,6 @@ class NewSweep {
 
   /** @param {any[]} scenarios the presets @param {Begun} begun @param {AbortSignal} signal */
   constructor(scenarios, { start, isGoneOn }, signal) {
-    this.#start = start;
     this.#signal = signal;
     this.#carried = isGoneOn
       ? Object.fromEntries(Object.entries(start).filter(([name]) => !FIELDS.includes(name)))
@@ -162,8 +151,9 @@ class NewSweep {
     this.#seed = box(String(start.seed ?? 0), { type: "number", min: 0 });
     this.#verify = box(start.verify ? String(start.verify) : "", { placeholder: "such as 0.05 or 10" });
     this.#design = start.design ?? "grid";
-    this.#accuracy = typeof start.set?.accuracy === "string" ? start.set.accuracy : "";
-    this.#outputs = typeof start.outputs === "string" ? start.outputs : start.outputs ? PART : "";
+    const isShown = accuracyWay(start.set?.accuracy) !== undefined;
+    this.#accuracy = new Accuracy(isShown ? start.set?.accuracy : undefined, changed);
+    this.#kept = new Kept(start.outputs, changed);
     const axes = Object.entries(start.axes ?? (isGoneOn ? {} : PROPOSED));
     this.#axes = new Rows(
       "axes",
@@ -171,9 +161,13 @@ class NewSweep {
       changed,
     );
     const set = Object.entries(start.set ?? {}).filter(
-      ([name, value]) => !(name === "accuracy" && typeof value === "string") && name !== SURVEY,
+      ([name]) => !(name === "accuracy" && isShown) && name !== SURVEY,
     );
-    this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isRecording);
+    this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isElsewhere);
+    this.#parts = [
+      new FieldsPart("String: tally, gauges, unbalance", STRING, this.#changes, stringFields, signal),
+      new FieldsPart("Mesh", [MESH], this.#changes, meshFields, signal),
+    ];
     this.#recording = new Recording(this.#changes, signal);
     this.#survey = surveyField(start.set?.[SURVEY], changed);
     this.preview = new Preview(signal);
@@ -181,7 +175,8 @@ class NewSweep {
       changed,
       refused: (/** @type {import("./problems.js").Found[]} */ problems) => this.#mark(problems),
       took: (/** @type {Record<string, unknown>} */ given) => this.#take(given),
-      shown: (/** @type {any} */ scenario) => this.#recording.show(scenario),
+      shown: (/** @type {any} */ scenario) =>
+        [this.#recording, ...this.#parts].forEach((part) => part.show(scenario)),
       changes: this.#changes,
     };
     this.#source = new Source(scenarios, start, on, signal);
@@ -208,26 +203,15 @@ class NewSweep {
   }
 
   #scenarioPart() {
-    const { outputs } = this.#start;
-    /** @type {[string, string][]} */
-    const inPart =
-      outputs && typeof outputs === "object" ? [[PART, `histories in part: ${JSON.stringify(outputs)}`]] : [];
-    const accuracy = choice("Accuracy", ACCURACIES, this.#accuracy, (value) => {
-      this.#accuracy = value;
-      this.#changed();
-    });
-    const kept = choice("Kept of each point", [...OUTPUTS, ...inPart], this.#outputs, (value) => {
-      this.#outputs = value;
-      this.#changed();
-    });
     return h(
       "section",
       { class: "panel", "aria-label": "Scenario" },
       this.#source.element,
-      h("div", { class: "controls" }, accuracy, kept),
+      h("div", { class: "controls" }, this.#accuracy.element, this.#kept.element),
       h("h2", {}, "Changes to the scenario"),
       this.#changes.element,
       this.#recording.element,
+      this.#parts.map(({ element }) => element),
       this.#source.fields,
       this.#survey.element,
     );
@@ -284,7 +268,7 @@ class NewSweep {
   /** Takes the changes of a scenario file; parameters that it sets are not varied. @param {Record<string, unknown>} set */
   #take(set) {
     this.#changes.replace(rowsOf(set));
-    this.#recording.draw();
+    [this.#recording, ...this.#parts].forEach((part) => part.draw());
     this.#axes.keep(({ name }) => !((ALIASES[name] ?? name) in set));
   }
 
@@ -296,7 +280,8 @@ class NewSweep {
     if (this.#name.value.trim()) body.name = this.#name.value.trim();
     Object.assign(body, this.#source.request);
     const set = Object.fromEntries(this.#changes.named.map((row) => [row.name, changeOf(row)]));
-    if (this.#accuracy) set.accuracy = this.#accuracy;
+    const accuracy = this.#accuracy.value;
+    if (accuracy) set.accuracy = accuracy;
     const stations = pasted(this.#survey.read);
     if (stations) set[SURVEY] = stations;
     if (Object.keys(set).length) body.set = set;
@@ -313,7 +298,8 @@ class NewSweep {
       .map((word) => word.trim())
       .filter(Boolean);
     if (words.length) body.tags = words;
-    if (this.#outputs) body.outputs = this.#outputs === PART ? this.#start.outputs : this.#outputs;
+    const { outputs } = this.#kept;
+    if (outputs) body.outputs = outputs;
     if (this.#verify.value.trim()) body.verify = Number(this.#verify.value);
     return body;
   }
@@ -356,6 +342,7 @@ class NewSweep {
       this.#mark(answer.warnings ?? []);
       fill(this.planned, ...plannedPart(answer));
       this.#recording.plan(answer.plan);
+      this.#parts.forEach((part) => part.refresh());
       this.#submit.disabled = this.#isSent || !maySubmit();
       this.#submit.title = maySubmit() ? "" : MAY_NOT;
       this.#submit.textContent = `Submit ${answer.total} ${answer.total === 1 ? "point" : "points"}`;
@@ -403,6 +390,11 @@ class NewSweep {
       this.#submit.disabled = false;
     }
   }
+}
+
+/** True of changes that parts of the form show in place of rows. @param {import("./rows.js").Row} row */
+function isElsewhere(row) {
+  return isRecording(row) || isMesh(row) || isTally(row) || isSection(row);
 }
 
 /** Rows of a request's changes. @param {Record<string, unknown>} set @returns {import("./rows.js").Row[]} */

@@ -2,7 +2,8 @@
 
 import { csvOf } from "../data/csv.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
-import { meaning, nodeOfColumn, number, unit } from "../data/units.js";
+import { aligner, placeIn, rangeOf } from "../data/columns.js";
+import { meaning, nodeOfColumn, unit } from "../data/units.js";
 import { classWord } from "../draw/class-word.js";
 import { choice, debounced, download, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -12,6 +13,8 @@ import { link } from "../ui/router.js";
 import { CLASS, sortable } from "./categories.js";
 import { preferred } from "./part.js";
 
+/** Significant digits of the largest number of a column. */
+const DIGITS = 5;
 const ROW_PX = 30;
 const SPARE_ROWS = 12;
 
@@ -54,6 +57,8 @@ class PointTable {
   #rows = [];
   /** @type {import("../data/sweep-table.js").Values[]} */
   #columns = [];
+  /** Of each shown column, how its numbers are written and the range of its values. @type {{write: (value: number) => string, range: [number, number] | null}[]} */
+  #scales = [];
   /** Names of the shown columns. @type {string[]} */
   names = [];
   /** @type {(index: number) => boolean} */
@@ -132,6 +137,7 @@ class PointTable {
       tests.every((test, order) => test.holds(found[asked.length + 1 + order][index])),
     );
     this.#rows = kept.sort(ordering(sortable(by, found[asked.length]), isDown));
+    this.#scales = asked.map((name, order) => this.#scaleOf(name, found[order]));
     fill(
       this.#status,
       `${this.#rows.length === data.rows ? "" : `${this.#rows.length} of `}${data.rows} points`,
@@ -144,6 +150,16 @@ class PointTable {
     );
     this.#drawColumns();
     this.#drawRows();
+  }
+
+  /** Decimals and range of a column's numbers in the rows. @param {string} name @param {import("../data/sweep-table.js").Values} column */
+  #scaleOf(name, column) {
+    const { size } = unit(name);
+    const values = this.#rows.flatMap((index) => {
+      const value = column[index];
+      return typeof value === "number" ? [value / size] : [];
+    });
+    return { write: aligner(values, DIGITS), range: name === "ordinal" ? null : rangeOf(values) };
   }
 
   /** Columns of the link, or the usual ones. */
@@ -307,10 +323,13 @@ class PointTable {
     if (typeof value !== "number")
       return h("td", { title: value ?? "" }, value === null ? "" : String(value).replaceAll("_", " "));
     const bias = biases.at(name, ordinal);
+    const { write, range } = this.#scales[this.names.indexOf(name)];
+    const shown = value / unit(name).size;
+    const place = range && placeIn(range, shown);
     return h(
       "td",
-      { class: "number" },
-      number(value / unit(name).size, 5),
+      place === null ? { class: "number" } : { class: "number placed", style: `--place:${place.toFixed(3)}` },
+      write(shown),
       bias && h("span", { class: "soft small" }, ` ${bias}`),
     );
   }

@@ -479,11 +479,11 @@ def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
     stress.fill("3.5")
     until(page, lambda: requested(page).get("set") == {"mud.yield_stress": 3.5})
     expect(scenario.get_by_text("The scenario has")).to_be_visible()
-    # Sections within sections, and items of lists.
-    scenario.locator("summary", has_text=re.compile("^string$")).click()
-    scenario.locator("summary", has_text=re.compile("^sections$")).click()
-    scenario.locator("summary", has_text=re.compile("^sections 3$")).click()
-    scenario.get_by_label("outer diameter [m]").fill("0.16")
+    # Sections are rows of a table beside the schema's fields.
+    scenario.get_by_text("String: tally, gauges, unbalance").click()
+    diameter = scenario.get_by_label("Outer diameter of section 3", exact=True)
+    diameter.fill("0.16")
+    diameter.blur()
     scenario.locator("summary", has_text=re.compile("^effects$")).click()
     scenario.get_by_role("combobox", name="buoyancy").select_option("off")
     changed = {"mud.yield_stress": 3.5, "string.sections[2].outer_diameter": 0.16, "effects.buoyancy": "off"}
@@ -491,7 +491,7 @@ def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
     expect(page.get_by_role("button", name=re.compile(r"Submit \d+ points"))).to_be_enabled()
     # What the scenario has anyway is no change.
     scenario.get_by_role("combobox", name="buoyancy").select_option("auto")
-    scenario.get_by_role("button", name="Take back").first.click()
+    scenario.get_by_role("button", name="Take back", exact=True).first.click()
     until(page, lambda: requested(page).get("set") == {"string.sections[2].outer_diameter": 0.16})
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from typing import Literal
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Error, Route, expect
 
 from browsing import Opens, clock, drawn, pixels, requested, scene, trace, until
-from drillsweep import Sweep
+from drillsweep import Client, Sweep
+from service import SHORT
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -199,3 +201,62 @@ def test_a_map_of_contacts_is_saved_as_a_picture(opened: Opens, recorded: Sweep)
     # Its cells are there, not only its axes.
     assert "<image" in drawing
     assert "time [s]" in drawing
+
+
+@pytest.fixture(scope="module")
+def lasting(client: Client) -> Sweep:
+    """One point with 150 snapshots, of 0 to 5.96 s."""
+    changes = SHORT | {"duration": 6, "recording.snapshots": {"rate_hz": 25}}
+    return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="lasting").wait(timeout=300.0)
+
+
+def test_the_string_moves_before_all_snapshots_have_arrived(opened: Opens, server: str, lasting: Sweep) -> None:
+    page = opened("#/sweeps")
+    held: list[Route] = []
+    holds = {"next": False, "others": True}
+
+    def hold(route: Route) -> None:
+        if holds["next"]:
+            held.append(route)
+        else:
+            holds["next"] = holds["others"]
+            route.continue_()
+
+    def release() -> None:
+        holds.update(next=False, others=False)
+        while held:
+            # One that its view has given up needs no answer.
+            with contextlib.suppress(Error):
+                held.pop().continue_()
+
+    page.route(re.compile(r"/snapshots\?.*format=npz"), hold)
+    point = f"{server}/#/sweeps/{lasting.id}/points/1?view=string&speed=2"
+    page.goto(point)
+    scene(page)
+    slider = page.get_by_label("Time", exact=True)
+
+    def reach() -> float:
+        return float(slider.get_attribute("max") or 0)
+
+    assert reach() == pytest.approx(1.0)
+    expect(page.get_by_text("up to 6 s on the way")).to_be_visible()
+    # It waits at the end of what is there, and goes on as more arrives.
+    page.get_by_role("button", name="Play").click()
+    until(page, lambda: clock(page) == pytest.approx(1.0))
+    expect(page.get_by_role("button", name="Pause")).to_be_visible()
+    release()
+    until(page, lambda: reach() == pytest.approx(5.96))
+    until(page, lambda: clock(page) == pytest.approx(5.96))
+    expect(page.get_by_text("on the way")).to_have_count(0)
+    expect(page.get_by_text("150 snapshots, 0.04 s apart")).to_be_visible()
+    drawn(page, "Contact force")
+    # A time of the link is shown once it is there.
+    holds.update(others=True)
+    page.goto(f"{point}&time=4&colour=torque")
+    scene(page)
+    expect(page.get_by_text("on the way")).to_be_visible()
+    assert clock(page) == pytest.approx(0.0)
+    release()
+    until(page, lambda: clock(page) == pytest.approx(4.0))
+    expect(page.locator(".scale")).to_contain_text("torque")
+    assert "time=4" in page.url

@@ -103,7 +103,7 @@ def test_field_units_hold_in_the_form_and_the_request_is_in_si_units(opened: Ope
 
 def test_recorded_nodes_and_windows_are_lists(opened: Opens) -> None:
     page = opened("#/new?preset=paper-200m")
-    page.get_by_text("Recorded nodes, windows of spectra").click()
+    page.get_by_text("Recorded nodes, windows of statistics and spectra").click()
     expect(page.get_by_label("Node 2", exact=True)).to_have_value("49")
     page.get_by_role("button", name="Remove node 1").click()
     page.get_by_role("button", name="Add a node").click()
@@ -363,7 +363,7 @@ def test_a_sweep_that_has_not_begun_waits_behind_others(idle: str, opened: Opens
 def test_a_state_has_one_colour_on_the_page(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=map&colour=state")
     picture = drawn(page, "over flow rate")
-    of_word = "element => getComputedStyle(element).color"
+    of_word = "element => getComputedStyle(element, '::before').color"
     word = page.locator(".state.succeeded, .state.completed").first.evaluate(of_word)
     of_cell = (
         "place => { const span = document.createElement('span'); span.style.color = place.data[0].colorscale[0][1];"

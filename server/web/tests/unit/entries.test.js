@@ -55,7 +55,7 @@ test("changes of the recording are shown as lists if they are of known form", ()
   assert.ok(!row("nodes", "[49]"));
   assert.ok(row("spectrum_windows", "[]") && row("spectrum_windows", "null"));
   assert.ok(!row("spectrum_windows", "[{}"));
-  assert.ok(row("snapshots", '{"rate_hz": 25}') && !row("orbit_window", "null"));
+  assert.ok(row("snapshots", '{"rate_hz": 25}') && !row("outputs", "null"));
 });
 
 test("snapshots take 44 bytes a node before compression", () => {

@@ -1,0 +1,200 @@
+// The string of a new sweep as tables: its sections from the top (the tally), gauges and unbalance masses.
+
+import { inputUnit, number, say } from "../data/units.js";
+import { h } from "../ui/dom.js";
+import { numberBox, wordBox } from "./fields.js";
+import { readersNumber } from "./entries.js";
+import { memberOf } from "./members.js";
+import { tablePart } from "./table.js";
+import { read } from "./values.js";
+
+/** Paths of the tables. */
+export const STRING = ["string.sections", "string.gauges", "string.unbalance"];
+const [SECTIONS, GAUGES, UNBALANCE] = STRING;
+
+/** Materials with a name (docs/model/beam.md, Section). @type {[name: string, material: Material][]} */
+const MATERIALS = [
+  ["steel", { youngs_modulus: 2.03e11, density: 7900, poissons_ratio: 0.3 }],
+  ["aluminium 2014-T6", { youngs_modulus: 7.3e10, density: 2800, poissons_ratio: 0.33 }],
+  ["non-magnetic steel", { youngs_modulus: 2e11, density: 7920, poissons_ratio: 0.27 }],
+  ["titanium Ti-6Al-4V", { youngs_modulus: 1.1e11, density: 4430, poissons_ratio: 0.31 }],
+];
+const GRADES = ["E-75", "X-95", "G-105", "S-135", "collar-110", "collar-100"];
+
+/** @typedef {{youngs_modulus: number, density: number, poissons_ratio: number, grade?: string}} Material */
+
+/** Columns of materials with what holds for a row that has none. @type {[name: string, text: string, inherits: string][]} */
+const MATERIAL_COLUMNS = [
+  ["material", "Material", "the string's"],
+  ["tool_joint.material", "Joint material", "the section's"],
+];
+
+/** @type {import("./table.js").Table[]} */
+const TABLES = [
+  {
+    path: SECTIONS,
+    heading: "Tally",
+    one: "section",
+    columns: [
+      { name: "kind", text: "Kind", words: ["drillpipe", "collar", "stabilizer", "bit"] },
+      { name: "count", text: "Pieces", isOptional: true },
+      { name: "length", text: "Length of one" },
+      { name: "outer_diameter", text: "Outer diameter" },
+      { name: "inner_diameter", text: "Inner diameter" },
+      { name: "tool_joint.length", text: "Joint length", isOptional: true },
+      { name: "tool_joint.outer_diameter", text: "Joint outer d.", isOptional: true },
+      { name: "tool_joint.inner_diameter", text: "Joint inner d.", isOptional: true },
+      ...MATERIAL_COLUMNS.map(([name, text, inherits]) => ({
+        name,
+        text,
+        cell: (
+          /** @type {string} */ label,
+          /** @type {any} */ value,
+          /** @type {any} */ row,
+          /** @type {(entered: unknown) => void} */ set,
+        ) => materialBox(label, inherits, value, name.startsWith("tool_joint") && !row.tool_joint, set),
+      })),
+    ],
+    proposed: { kind: "drillpipe", length: 9.5, outer_diameter: 0.127, inner_diameter: 0.108 },
+  },
+  {
+    path: GAUGES,
+    heading: "Gauges: blades of stabilizers, and the bit",
+    one: "gauge",
+    columns: [
+      { name: "measured_depth", text: "Measured depth" },
+      { name: "clearance", text: "Radial clearance" },
+    ],
+    proposed: { measured_depth: 0, clearance: 1e-4 },
+  },
+  {
+    path: UNBALANCE,
+    heading: "Unbalance masses",
+    one: "mass",
+    columns: [
+      { name: "measured_depth", text: "Measured depth" },
+      { name: "mass", text: "Mass" },
+      { name: "radius", text: "Distance from the axis" },
+      { name: "phase_deg", text: "Phase", isOptional: true, isSigned: true },
+    ],
+    proposed: { measured_depth: 0, mass: 1.6, radius: 0.064 },
+  },
+];
+
+/** True of a change that this part of the form can show. @param {import("./rows.js").Row} row */
+export function isTally({ name, values }) {
+  if (!TABLES.some(({ path }) => path === name)) return false;
+  const value = read(values);
+  return Array.isArray(value) && value.every((row) => typeof row === "object" && row !== null);
+}
+
+/**
+ * Measured depth of the lower end of each section [m]; NaN below a length that is no number.
+ * @param {{count?: number, length: number}[]} sections
+ */
+export function lowerEnds(sections) {
+  let depth = 0;
+  return sections.map(
+    ({ count = 1, length }) => (depth += typeof length === "number" ? count * length : NaN),
+  );
+}
+
+/** Name of a material; `own` for other numbers, empty if there is none. @param {Material | null | undefined} material */
+export function materialName(material) {
+  if (!material) return "";
+  const isSame = (/** @type {Material} */ one) =>
+    one.youngs_modulus === material.youngs_modulus &&
+    one.density === material.density &&
+    one.poissons_ratio === material.poissons_ratio;
+  return MATERIALS.find(([, one]) => isSame(one))?.[0] ?? "own";
+}
+
+/**
+ * @param {import("./fields.js").Edited} edited
+ * @returns {HTMLElement[]}
+ */
+export function stringFields(edited) {
+  /** @type {any[]} */
+  const sections = edited.value(SECTIONS) ?? [];
+  const below = [...ownMaterials(sections, edited), lengthLine(sections, edited)];
+  const shows = {
+    head: `Down to [${inputUnit("measured_depth").symbol}]`,
+    texts: (/** @type {any[]} */ rows) =>
+      lowerEnds(rows).map((end) =>
+        Number.isFinite(end) ? number(readersNumber("measured_depth", end), 6) : "–",
+      ),
+  };
+  return TABLES.map((table) =>
+    table.path === SECTIONS ? tablePart({ ...table, shows }, edited, below) : tablePart(table, edited),
+  );
+}
+
+/** @param {string} label @param {string} inherits @param {Material | undefined} value @param {boolean} isDisabled @param {(value: Material | undefined) => void} set */
+function materialBox(label, inherits, value, isDisabled, set) {
+  const chosen = materialName(value);
+  /** @type {[string, string][]} */
+  const options = [
+    ["", inherits],
+    ...MATERIALS.map(([name]) => /** @type {[string, string]} */ ([name, name])),
+  ];
+  if (chosen === "own") options.push(["own", "own numbers"]);
+  const box = wordBox(label, options, chosen, (name) => {
+    if (name !== "own") set(MATERIALS.find(([one]) => one === name)?.[1]);
+  });
+  box.disabled = isDisabled;
+  return box;
+}
+
+/** Numbers of the materials that rows have of their own. @param {any[]} rows @param {import("./fields.js").Edited} edited */
+function ownMaterials(rows, edited) {
+  return rows.flatMap((row, at) =>
+    MATERIAL_COLUMNS.flatMap(([name, text]) => {
+      const material = memberOf(row, name);
+      const heading = `${text} of section ${at + 1}`;
+      return material ? [materialLine(`${SECTIONS}[${at}].${name}`, heading, material, edited)] : [];
+    }),
+  );
+}
+
+/** @param {string} path of the material @param {string} heading @param {any} material @param {import("./fields.js").Edited} edited */
+function materialLine(path, heading, material, edited) {
+  const set = (/** @type {string} */ name, /** @type {unknown} */ value) =>
+    edited.setMember(SECTIONS, `${path.slice(SECTIONS.length)}.${name}`, value);
+  const boxes = [
+    ["youngs_modulus", "E"],
+    ["density", "density"],
+    ["poissons_ratio", "Poisson's ratio"],
+  ].map(([name, text]) => {
+    const { symbol } = inputUnit(`${path}.${name}`);
+    return h(
+      "label",
+      { class: "field" },
+      h("span", {}, symbol ? `${text} [${symbol}]` : text),
+      numberBox(`${heading}: ${text}`, `${path}.${name}`, material[name], (value) => set(name, value)),
+    );
+  });
+  /** @type {[string, string][]} */
+  const grades = [
+    ["", "grade unknown"],
+    ...GRADES.map((grade) => /** @type {[string, string]} */ ([grade, grade])),
+  ];
+  return h(
+    "div",
+    { class: "line" },
+    `${heading}:`,
+    boxes,
+    wordBox(`${heading}: grade`, grades, material.grade ?? "", (grade) => set("grade", grade || undefined)),
+  );
+}
+
+/** Length of the string next to the depth to which its survey reaches. @param {any[]} sections @param {import("./fields.js").Edited} edited */
+function lengthLine(sections, edited) {
+  const length = lowerEnds(sections).at(-1) ?? 0;
+  const reach = edited.value("well.survey")?.at(-1)?.measured_depth;
+  if (!Number.isFinite(length)) return h("p", { hidden: true });
+  return h(
+    "p",
+    { class: "small soft" },
+    `The string is ${say("measured_depth", length, 6)} long${typeof reach === "number" ? `; the scenario's survey reaches ${say("measured_depth", reach, 6)}` : ""}.`,
+  );
+}

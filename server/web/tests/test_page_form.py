@@ -1,0 +1,236 @@
+"""Fields of the form for a new sweep that are lists, tables and choices: mesh, windows, string, data kept."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from browsing import Opens, requested, until
+
+SCENARIO = "#/new?preset=paper-200m"
+
+
+def changes(page: Page) -> dict[str, Any]:
+    return dict(requested(page).get("set", {}))
+
+
+def enter(box: Locator, text: str) -> None:
+    """Types a number and leaves its field."""
+    box.fill(text)
+    box.blur()
+
+
+def planned(page: Page) -> None:
+    """Waits until the service has accepted the request."""
+    expect(page.get_by_role("button", name=re.compile("^Submit 12 points"))).to_be_enabled(timeout=60_000)
+
+
+@pytest.fixture
+def refused(opened: Opens, troubles: list[str]) -> Iterator[None]:
+    """Takes away what a browser writes of requests that are refused on the way to one that is not."""
+    del opened  # It is requested so that this ends before its pages do.
+    yield
+    troubles[:] = [text for text in troubles if "422" not in text]
+
+
+def test_the_mesh_is_a_rule_a_factor_or_lengths(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.locator("summary", has_text=re.compile("^Mesh$")).click()
+    way = page.get_by_label("Element lengths")
+    expect(way).to_have_value("lengths")
+    # One number is one change, which may be varied just as well.
+    enter(page.get_by_label("Elements of collar"), "0.4")
+    until(page, lambda: changes(page) == {"mesh.collar": 0.4})
+    planned(page)
+    page = opened("#/new?preset=paper-200m-damped")
+    page.locator("summary", has_text=re.compile("^Mesh$")).click()
+    way = page.get_by_label("Element lengths")
+    expect(way).to_have_value("auto")
+    way.select_option("factor")
+    enter(page.get_by_label("Factor on the element lengths"), "0.5")
+    until(page, lambda: changes(page) == {"mesh": {"auto": 0.5}})
+    planned(page)
+    # It is shown here alone.
+    expect(page.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
+    page.get_by_role("button", name="Take back mesh").click()
+    until(page, lambda: changes(page) == {})
+    expect(way).to_have_value("auto")
+
+
+def test_lengths_of_elements_are_in_the_readers_units(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_role("button", name="Units: SI. Switch").click()
+    page.locator("summary", has_text=re.compile("^Mesh")).click()
+    expect(page.get_by_label("Elements of collar")).to_have_value("1.64042")
+    enter(page.get_by_label("Elements of collar"), "1.5")
+    until(page, lambda: changes(page) == {"mesh.collar": 0.4572})
+    planned(page)
+    # Another way proposes all lengths.
+    page = opened("#/new?preset=paper-200m-damped")
+    page.locator("summary", has_text=re.compile("^Mesh")).click()
+    page.get_by_label("Element lengths").select_option("lengths")
+    until(
+        page, lambda: set(changes(page).get("mesh", {})) == {"drillpipe", "tool_joint", "collar", "stabilizer", "bit"}
+    )
+
+
+def test_the_window_of_the_statistics_settles_or_is_fixed(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("Recorded nodes, windows of statistics").click()
+    way = page.get_by_label("Window", exact=True)
+    way.select_option("settled")
+    until(page, lambda: changes(page) == {"recording.orbit_window": "settled"})
+    planned(page)
+    way.select_option("fixed")
+    enter(page.get_by_label("Statistics from [s]"), "20")
+    enter(page.get_by_label("Statistics to [s]"), "50")
+    until(page, lambda: changes(page) == {"recording.orbit_window": {"from": 20, "to": 50}})
+    planned(page)
+    expect(page.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
+    page.get_by_role("button", name="Take back window of the statistics").click()
+    until(page, lambda: changes(page) == {})
+
+
+@pytest.mark.usefixtures("refused")
+def test_sections_are_changed_inserted_and_removed(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    tally = page.get_by_role("group", name="Tally")
+    expect(tally.locator("tbody tr")).to_have_count(8)
+    expect(tally).to_contain_text("The string is 200 m long")
+    # One number is one change, which may be varied just as well.
+    enter(page.get_by_label("Outer diameter of section 3", exact=True), "0.165")
+    until(page, lambda: changes(page) == {"string.sections[2].outer_diameter": 0.165})
+    planned(page)
+    page.get_by_role("button", name="Insert a section above 3").click()
+    enter(page.get_by_label("Length of one of section 3", exact=True), "10")
+    page.get_by_role("button", name="Remove section 5").click()
+    enter(page.get_by_label("Length of one of section 4", exact=True), "25")
+
+    def lengths() -> list[float]:
+        return [section["length"] for section in changes(page).get("string.sections", [])]
+
+    until(page, lambda: lengths() == [4, 9.5, 10, 25, 40, 2, 33, 0.5])
+    assert set(changes(page)) == {"string.sections"}
+    assert [section["outer_diameter"] for section in changes(page)["string.sections"]][2:4] == [0.165, 0.165]
+    expect(tally).to_contain_text("200 m long")
+    planned(page)
+    page.get_by_role("button", name="Take back tally").click()
+    until(page, lambda: changes(page) == {})
+    expect(page.get_by_label("Outer diameter of section 3", exact=True)).to_have_value("0.159")
+
+
+@pytest.mark.usefixtures("refused")
+def test_a_section_has_a_material_and_joints_of_its_own(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    page.get_by_label("Material of section 2", exact=True).select_option("aluminium 2014-T6")
+    page.get_by_label("Joint material of section 2").select_option("steel")
+    enter(page.get_by_label("Material of section 2: density", exact=True), "2780")
+    page.get_by_label("Joint material of section 2: grade").select_option("S-135")
+
+    def pipe() -> dict[str, Any]:
+        return dict((changes(page).get("string.sections") or [{}, {}])[1])
+
+    until(page, lambda: pipe().get("tool_joint", {}).get("material", {}).get("grade") == "S-135")
+    assert pipe()["material"] == {"youngs_modulus": 7.3e10, "density": 2780, "poissons_ratio": 0.33}
+    planned(page)
+    # A pipe without numbers of its joints has none.
+    for name in ("Joint length", "Joint outer d.", "Joint inner d."):
+        enter(page.get_by_label(f"{name} of section 2", exact=True), "")
+    until(page, lambda: set(pipe().get("tool_joint", {})) == {"material"})
+    page.get_by_label("Joint material of section 2", exact=True).select_option("")
+    until(page, lambda: "tool_joint" not in pipe())
+    planned(page)
+
+
+def test_gauges_and_masses_are_tables(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    page.get_by_role("button", name="Remove gauge 1").click()
+    until(page, lambda: len(changes(page).get("string.gauges", [])) == 2)
+    enter(page.get_by_label("Phase of mass 2", exact=True), "-90")
+    until(page, lambda: changes(page).get("string.unbalance[1].phase_deg") == -90)
+    planned(page)
+
+
+@pytest.mark.usefixtures("refused")
+def test_a_problem_of_the_string_stands_at_its_table(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    page.get_by_role("button", name="Remove section 1", exact=True).click()
+    enter(page.get_by_label("Inner diameter of section 3", exact=True), "0.5")
+    tally = page.get_by_role("group", name="Tally")
+    expect(tally.locator("[data-problem]", has_text="must be smaller than the outer diameter")).to_be_visible()
+
+
+@pytest.mark.usefixtures("refused")
+def test_histories_in_part_have_fields(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_label("Kept of each point").select_option("part")
+    page.get_by_label("Histories of nodes").fill("49, 2 ft")
+    enter(page.get_by_label("Every n-th sample"), "5")
+    enter(page.get_by_label("Histories to [s]"), "30")
+    orbits = {"nodes": [{"node": 49}, {"depth": 0.6096}], "decimation": 5, "window": {"from": 0, "to": 30}}
+    until(page, lambda: requested(page).get("outputs") == {"orbits": orbits})
+    page.get_by_label("Histories of nodes").fill("bit")
+    expect(page.get_by_text("Nodes are numbers or depths")).to_be_visible()
+
+
+@pytest.mark.usefixtures("refused")
+def test_an_accuracy_is_an_allowed_error_or_a_step(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    way = page.get_by_label("Accuracy", exact=True)
+    way.select_option("statistics")
+    enter(page.get_by_label("Allowed error, relative"), "0.02")
+    until(page, lambda: changes(page) == {"accuracy": {"statistics": 0.02}})
+    planned(page)
+    way.select_option("steps")
+    page.get_by_label("Integrator", exact=True).select_option("generalized_alpha")
+    enter(page.get_by_label("Step", exact=True), "0.00025")
+    enter(page.get_by_label("Spectral radius", exact=True), "0.7")
+    steps = {"integrator": "generalized_alpha", "step": 0.00025, "spectral_radius": 0.7}
+    until(page, lambda: changes(page) == {"accuracy": steps})
+    planned(page)
+    # A link with it shows it in the same fields.
+    again = opened("#" + page.url.partition("#")[2])
+    expect(again.get_by_label("Spectral radius", exact=True)).to_have_value("0.7")
+    expect(again.get_by_role("textbox", name="Value", exact=True)).to_have_count(0)
+
+
+def test_no_field_of_the_form_is_json(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("All fields, with units").click()
+    form = page.locator(".schema")
+    expect(form.locator("summary", has_text=re.compile("^cost study$"))).to_be_visible()
+
+    def folded() -> Locator:
+        return form.locator("details.section:not([open]) > summary").locator("visible=true")
+
+    while folded().count():
+        folded().first.click()
+    for box in form.get_by_label(re.compile("^Give ")).all():
+        box.check()
+    while folded().count():
+        folded().first.click()
+    expect(form.locator("textarea")).to_have_count(0)
+
+
+def test_a_cost_study_is_given_by_fields(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("All fields, with units").click()
+    page.locator("summary", has_text=re.compile("^cost study$")).click()
+    page.get_by_label("Give cost study").check()
+    page.get_by_label("members").fill("3")
+    page.get_by_label("standard", exact=True).check()
+    enter(page.get_by_label("mesh factors"), "0.5, 1")
+    page.locator("summary", has_text=re.compile("^methods$")).first.click()
+    page.get_by_role("button", name="Add a row").click()
+    enter(page.get_by_label("Steps of row 1"), "0.001, 0.0005")
+    methods = [{"integrator": "esdirk4", "steps": [0.001, 0.0005]}]
+    study = {"members": 3, "presets": ["standard"], "mesh_factors": [0.5, 1], "methods": methods}
+    until(page, lambda: changes(page).get("cost_study") == study)

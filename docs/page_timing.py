@@ -4,9 +4,8 @@ The sweep has complete points with histories; that of point 1 is shown and brush
 each time of a browser that has just been started with an empty profile on disk. A reader's browser has a profile, too;
 in a private window, which has none, pages take longer to load.
 
-A view is there once it has its numbers, and its picture is seen: sketched, or drawn by the drawing library. Once the
-latter has drawn it, the picture answers to the mouse as well. The first load and those that follow are each of a page
-of its own, and so is the way from another view.
+A view is there once it has its numbers and its picture is drawn. The first load and those that follow are each of a
+page of its own, and so is the way from another view.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ OBSERVE = """(selector) => {
     const seen = window.brushing = { frames: [], delays: [] };
     let moved = 0;
     addEventListener("pointermove", () => moved = performance.now(), true);
-    document.querySelector(selector).addEventListener("brushed", () => seen.delays.push(performance.now() - moved));
+    document.querySelector(selector).addEventListener("painted", () => seen.delays.push(performance.now() - moved));
     const tick = (time) => {
         seen.frames.push(time);
         requestAnimationFrame(tick);
@@ -63,10 +62,8 @@ ANSWERS = """() => performance.getEntriesByType("resource")
     .filter(({ name }) => name.includes("/v1/sweeps/") && name.includes("/table"))
     .map(({ name, startTime, responseEnd }) =>
         [decodeURIComponent(name.slice(name.indexOf("/table") - 4)), responseEnd - startTime, responseEnd])"""
-DRAWN = ".main-svg"
-"""Pictures that the drawing library has drawn."""
-SEEN = f":is(.sketch, {DRAWN})"
-"""A picture that is seen: drawn, or sketched before."""
+DRAWN = "canvas.picture"
+"""A picture that is drawn."""
 
 
 @dataclass
@@ -75,10 +72,8 @@ class View:
 
     name: str
     link: str
-    seen: str
-    """Selects what is there once it is seen."""
     drawn: str
-    """The same once it answers to the mouse."""
+    """Selects what is there once it is drawn."""
 
 
 def views(sweep: str) -> list[View]:
@@ -86,18 +81,15 @@ def views(sweep: str) -> list[View]:
     of_sweep, of_point = f"#/sweeps/{sweep}?view=", f"#/sweeps/{sweep}/points/1?view="
 
     def pictured(name: str, link: str, place: str = ".plot") -> View:
-        return View(name, link, f"{place} {SEEN}", f"{place} {DRAWN}")
-
-    def told(name: str, link: str, place: str) -> View:
-        return View(name, link, place, place)
+        return View(name, link, f"{place} {DRAWN}")
 
     return [
-        told("sweeps", "#/sweeps", "main tbody tr"),
+        View("sweeps", "#/sweeps", "main tbody tr"),
         pictured("map", f"{of_sweep}map"),
-        told("table of points", f"{of_sweep}table", ".rows tbody tr"),
+        View("table of points", f"{of_sweep}table", ".rows tbody tr"),
         pictured("profiles of a point", f"{of_point}profiles"),
         pictured("its history, orbit and spectrum", f"{of_point}motion", ".plot[aria-label^='Orbit of node']"),
-        told("its well", f"{of_point}well", "canvas.scene[data-drawn]"),
+        View("its well", f"{of_point}well", "canvas.scene[data-drawn]"),
         pictured("new sweep", "#/new"),
     ]
 
@@ -114,20 +106,20 @@ def started(playwright: Playwright) -> Iterator[BrowserContext]:
         context.close()
 
 
-def opened(context: BrowserContext, server: str, view: View) -> tuple[float, float, float]:
-    """Milliseconds from the start of loading until a view is seen and until it is drawn, and bytes transferred."""
+def opened(context: BrowserContext, server: str, view: View) -> tuple[float, float]:
+    """Milliseconds from the start of loading until a view is drawn, and bytes transferred."""
     page = context.new_page()
     page.goto(f"{server}/{view.link}", wait_until="commit")
-    _, seen, drawn = page.evaluate(SHOWN, [None, view.seen, view.drawn])
+    _, drawn = page.evaluate(SHOWN, [None, view.drawn])
     size = page.evaluate(BYTES)
     page.wait_for_load_state("networkidle")
     page.wait_for_timeout(PAUSE_MS)
     page.close()
-    return seen, drawn, size
+    return drawn, size
 
 
-def moved(context: BrowserContext, server: str, sweep: str, view: View) -> tuple[float, float]:
-    """Milliseconds from another view until one is seen and until it is drawn; pictures were drawn before."""
+def moved(context: BrowserContext, server: str, sweep: str, view: View) -> float:
+    """Milliseconds from another view until one is drawn; pictures were drawn before."""
     page = context.new_page()
     page.goto(f"{server}/#/sweeps/{sweep}?view=scatter")
     page.locator(f".plot {DRAWN}").first.wait_for()
@@ -135,15 +127,15 @@ def moved(context: BrowserContext, server: str, sweep: str, view: View) -> tuple
     page.locator("main a").wait_for()
     page.wait_for_load_state("networkidle")
     page.wait_for_timeout(PAUSE_MS)
-    start, seen, drawn = page.evaluate(SHOWN, [view.link, view.seen, view.drawn])
+    start, drawn = page.evaluate(SHOWN, [view.link, view.drawn])
     page.close()
-    return seen - start, drawn - start
+    return float(drawn - start)
 
 
 def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, float], float]:
     """A map of a sweep: milliseconds of each answer that it needs of tables, and from the last to the picture."""
     page.goto(f"{server}/#/sweeps/{sweep}?view={view}", wait_until="commit")
-    _, now = page.evaluate(SHOWN, [None, ".heatmaplayer image"])
+    _, now = page.evaluate(SHOWN, [None, f".plot {DRAWN}"])
     answers = page.evaluate(ANSWERS)
     return {name: duration for name, duration, _ in answers}, now - max(end for *_, end in answers)
 
@@ -170,9 +162,9 @@ def brushed(page: Page, server: str, sweep: str) -> Brushed:
     """Drags a window across the history of point 1 by the mouse."""
     page.goto(f"{server}/#/sweeps/{sweep}/points/1?view=motion")
     orbit = ".plot[aria-label^='Orbit of node']"
-    page.locator(f"{orbit} .main-svg").first.wait_for()
+    page.locator(f"{orbit} {DRAWN}").first.wait_for()
     page.wait_for_load_state("networkidle")
-    box = page.locator(".plot[aria-label^='History of node'] .nsewdrag").first.bounding_box()
+    box = page.locator(".plot[aria-label^='History of node'] .area").first.bounding_box()
     if box is None:
         raise SystemExit("the history has no place on the page")
     page.evaluate(OBSERVE, orbit)
@@ -227,11 +219,8 @@ def main() -> None:
             print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
             return
         if not arguments.brushing:
-            print(
-                "| view | first load | loads after it | drawn | from another view | drawn | transferred at first "
-                "| after it |"
-            )
-            print("|---|---|---|---|---|---|---|---|")
+            print("| view | first load | loads after it | from another view | transferred at first | after it |")
+            print("|---|---|---|---|---|---|")
         for view in [] if arguments.brushing else views(arguments.sweep):
             first, after, inside = [], [], []
             for _ in range(arguments.times):
@@ -239,9 +228,8 @@ def main() -> None:
                     first.append(opened(context, arguments.server, view))
                     after += [opened(context, arguments.server, view) for _ in range(REPEATED)]
                     inside += [moved(context, arguments.server, arguments.sweep, view) for _ in range(2)]
-            columns = [list(zip(*of, strict=True)) for of in (first, after, inside)]
-            (seen, _, size), (seen_after, drawn_after, size_after), (moved_to, drawn_there) = columns
-            times = [median(column) for column in (seen, seen_after, drawn_after, moved_to, drawn_there)]
+            (drawn, size), (drawn_after, size_after) = [list(zip(*of, strict=True)) for of in (first, after)]
+            times = [median(column) for column in (drawn, drawn_after, inside)]
             sizes = [median(column) / 1000 for column in (size, size_after)]
             told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
             print("| " + " | ".join([view.name, *told]) + " |", flush=True)

@@ -112,7 +112,7 @@ def main() -> None:
                 unfold(page, name)
                 page.wait_for_load_state("networkidle")
                 for picture in page.locator(".plot:visible:not(.parallel)").all():
-                    picture.locator(".main-svg").first.wait_for()
+                    picture.locator("canvas.picture").first.wait_for()
                 # Canvases are painted a frame after the axes.
                 page.wait_for_timeout(500)
                 height = TALLER.get(name, LARGEST_HEIGHT)

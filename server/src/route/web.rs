@@ -17,10 +17,10 @@ use crate::guard::middleware;
 /// Path, hash, compressed bytes and imports of each file.
 const FILES: &[(&str, &str, &[u8], &[&str])] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
 
-/// Content security policy of the page, which loads from this service alone. plotly.js sets inline styles and makes pictures from blobs;
-/// Swagger UI sets inline styles and has icons as data.
+/// Content security policy of the page, which loads from this service alone. The page and Swagger UI set inline styles; pictures to be saved,
+/// and Swagger UI's icons, are data.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
-    img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
+    img-src 'self' data:; font-src 'self'; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'self'";
 
 /// Version of all files together, which is part of their paths, so that browsers can keep them without limit.
 static VERSION: LazyLock<String> = LazyLock::new(|| {

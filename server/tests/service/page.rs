@@ -177,7 +177,7 @@ async fn the_page_and_its_modules_are_served_without_a_token() {
     let text = page.text().to_owned();
     let main = text.split('"').find(|part| part.ends_with("/main.js")).expect("the page loads it");
     let folder = main.strip_suffix("main.js").unwrap();
-    let mut waiting = ["main.js", "style.css", "vendor/plotly-cartesian.min.js"].map(str::to_owned).to_vec();
+    let mut waiting = ["main.js", "style.css", "vendor/swagger-ui-bundle.js"].map(str::to_owned).to_vec();
     let mut seen = Vec::new();
     while let Some(path) = waiting.pop() {
         if seen.contains(&path) {

@@ -170,10 +170,9 @@ const [CHARACTER, BESIDE] = [6.2, 110];
 function nameOf({ name, colour }, x, y, width) {
   const most = Math.max(8, Math.floor((width - BESIDE) / CHARACTER));
   const brief = name.length > most ? `${name.slice(0, most - 1)}…` : name;
-  // Names of sweeps are anybody's text, which plotly would take for markup.
-  const text = brief.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
   return {
-    text: `<span style="color:${colour}">━━</span> ${text}`,
+    text: brief,
+    mark: colour,
     xref: "paper",
     yref: "paper",
     x,

@@ -4,7 +4,7 @@
 import { get } from "../data/api.js";
 import { largestShown } from "../data/decimation.js";
 import { frames } from "../data/snapshots.js";
-import { shown, title } from "../data/units.js";
+import { number, shown, title } from "../data/units.js";
 import { canvas, draw, laidOut } from "../draw/plots.js";
 import { contactMap } from "../point/contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE } from "../point/rotation.js";
@@ -193,7 +193,7 @@ export async function drawEnds(place, comparison) {
     comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");
   if (names.length > 1)
     comparison.says.push(
-      `${[...sources].map(([number, source], order) => `${order ? "point" : "Point"} ${number} is from its ${source}`).join(", ")}: sampled differently.`,
+      `${[...sources].map(([point, source], order) => `${order ? "point" : "Point"} ${point} is from its ${source}`).join(", ")}: sampled differently.`,
     );
   if (names.length) comparison.says.push(TORQUE);
   return draw(
@@ -219,7 +219,7 @@ function endPanel(point, { quantity, time, values }) {
     name: point.name,
     showlegend: quantity !== "torque",
     line: { color: point.colour, width: 1 },
-    hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
   };
   return { ...point, traces: [trace], scale: quantity, yaxis: { title: title(quantity), quantity } };
 }

@@ -257,10 +257,10 @@ class ShownComparison {
     // The service computes modes and effects for seconds.
     if (kind && isRecorded && !this.#place.hasChildNodes()) fill(this.#place, this.#loading);
     try {
-      const shape = isRecorded && (await VIEWS[view].draw(this.#place, comparison));
+      if (isRecorded) await VIEWS[view].draw(this.#place, comparison);
       if (!drawing.aborted && comparison.profiled) {
         this.#readAt = comparison.profiled.read;
-        this.#cursor.follow(shape, comparison.profiled.depths);
+        this.#cursor.follow(comparison.profiled.depths);
       }
     } catch (error) {
       if (!drawing.aborted) throw error;

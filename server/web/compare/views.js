@@ -1,7 +1,7 @@
 // Views of a comparison, by their names in the link.
 
 import { spectrumRange } from "../data/motion-requests.js";
-import { label, say, shown, suitedUnit, title, unit } from "../data/units.js";
+import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
   orbitLayout,
@@ -106,7 +106,7 @@ function overTime(point, time, values, dash = point.dash) {
     x: time,
     y: values,
     line: { color: point.colour, dash, width: 1 },
-    hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+    tell: (/** @type {{x: number, y: number}} */ { x: at, y }) => `${number(at, 6)} s: ${number(y)}`,
   };
 }
 
@@ -131,9 +131,9 @@ async function drawQuantities(place, comparison) {
       table: (/** @type {string} */ name) => tables.get(point.number)?.[tableOf(name)],
     }));
   const nodes = new Map(drawable.map((point) => [point.number, nodeDepths(profiles, point.table)]));
-  const endOfString = (/** @type {number} */ number) => nodes.get(number)?.at(-1) ?? -Infinity;
+  const endOfString = (/** @type {number} */ point) => nodes.get(point)?.at(-1) ?? -Infinity;
   const deepest = drawable.reduce(
-    (/** @type {number} */ best, { number }) => (endOfString(number) > endOfString(best) ? number : best),
+    (/** @type {number} */ best, one) => (endOfString(one.number) > endOfString(best) ? one.number : best),
     drawable[0]?.number,
   );
   comparison.profiled = {
@@ -150,7 +150,7 @@ async function drawQuantities(place, comparison) {
                   profiles,
                   point.table,
                   depth,
-                  told.filter(({ data }) => data.name === point.name),
+                  told.filter(({ trace }) => trace.name === point.name),
                 )
           }`,
         ),
@@ -332,14 +332,13 @@ async function drawEnergy(place, comparison) {
     x: accounts.map(label),
     y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
     marker: { color: point.colour },
-    hovertemplate: `%{x}: %{y:.4~g} ${symbol}<extra></extra>`,
+    tell: (/** @type {{x: string, y: number}} */ { x, y }) => `${x}: ${number(y)} ${symbol}`,
   }));
   return draw(
     place,
     traces,
     {
       shows: "",
-      barmode: "group",
       xaxis: { title: "" },
       yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic", size },
     },

@@ -42,14 +42,6 @@ export function answerAfter(work) {
   needed = work;
 }
 
-/** Requests of views without an answer yet. */
-let open = 0;
-
-/** Whether answers are still to come. */
-export function isWaiting() {
-  return open > 0;
-}
-
 /**
  * @param {string} path
  * @param {Record<string, any>} [query]
@@ -57,13 +49,8 @@ export function isWaiting() {
  * @returns {Promise<any>}
  */
 export async function get(path, query, signal) {
-  open += 1;
-  try {
-    const [answer] = await Promise.all([ask("GET", address(path, query), undefined, signal), needed]);
-    return answer;
-  } finally {
-    open -= 1;
-  }
+  const [answer] = await Promise.all([ask("GET", address(path, query), undefined, signal), needed]);
+  return answer;
 }
 
 /**

@@ -30,13 +30,13 @@ export function costsOf(points) {
 /**
  * Range of a logarithmic axis around some values, of a decade at least.
  * @param {number[]} values
- * @returns {[number, number]} decimal logarithms
+ * @returns {[number, number]}
  */
 export function decades(values) {
   const logs = values.filter((value) => value > 0).map(Math.log10);
   const [least, largest] = [Math.min(...logs), Math.max(...logs)];
   const room = Math.max(0.2, (1 - (largest - least)) / 2);
-  return [least - room, largest + room];
+  return [10 ** (least - room), 10 ** (largest + room)];
 }
 
 /** Errors of a study that a picture can show, with the words for them; the first that any row has is shown. @type {[string, string][]} */

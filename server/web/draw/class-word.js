@@ -2,7 +2,7 @@
 
 import { classWords } from "../data/judgement.js";
 import { h } from "../ui/dom.js";
-import { classColour, inkOnClass } from "./colours.js";
+import { classColour, inkOnClass } from "./picture/colours.js";
 
 /** @param {string} name of the class @param {string} [title] */
 export function classWord(name, title) {

@@ -2,7 +2,7 @@
 
 import { shown, unit } from "../data/units.js";
 import { h } from "../ui/dom.js";
-import { GRADIENT } from "./colours.js";
+import { GRADIENT } from "./picture/colours.js";
 
 /** @typedef {{text: string, least: string, largest: string}} ScaleWords */
 

@@ -3,7 +3,8 @@
 import { say, unit } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { rounded } from "../ui/router.js";
-import { adjust, inks } from "./plots.js";
+import { inks } from "./picture/inks.js";
+import { adjust } from "./plots.js";
 
 /** Keys that move the cursor, and by how many nodes; what is deeper is below, as in the picture. @type {Record<string, number>} */
 const STEPS = {
@@ -55,6 +56,9 @@ export class DepthCursor {
     this.#place = place;
     this.#link = link;
     this.#read = read;
+    place.addEventListener("pointhover", (event) =>
+      this.#hover(/** @type {CustomEvent} */ (event).detail.points),
+    );
     const cursor = h(
       "label",
       { class: "field wide" },
@@ -68,16 +72,17 @@ export class DepthCursor {
     this.element = h("div", {}, cursor, this.#reading);
   }
 
-  /** Follows the picture that has just been drawn. @param {any} shape @param {number[]} depths of its nodes */
-  follow(shape, depths) {
-    shape.removeAllListeners?.("plotly_hover");
-    shape.on?.("plotly_hover", (/** @type {any} */ event) => {
-      const { y } = event.points[0];
-      this.#slideTo(nearest(this.#depths, y));
-      // The mouse has a line of its own.
-      if (this.#isMarked) this.#mark(null);
-      this.#tell(y, event.points);
-    });
+  /** @param {import("./picture/nearest.js").Told[]} told at the mouse */
+  #hover(told) {
+    const { y } = told[0];
+    this.#slideTo(nearest(this.#depths, y));
+    // The mouse has a line of its own.
+    if (this.#isMarked) this.#mark(null);
+    this.#tell(y, told);
+  }
+
+  /** Follows the picture that has just been drawn. @param {number[]} depths of its nodes */
+  follow(depths) {
     this.#depths = depths;
     Object.assign(this.#slider, { max: String(Math.max(0, depths.length - 1)), disabled: !depths.length });
     const { query } = this.#link;
@@ -126,7 +131,7 @@ export class DepthCursor {
       y1: depth,
       line: { color: inks().text, width: 1 },
     };
-    void adjust(this.#place, { shapes: this.#isMarked ? [line] : [] });
+    adjust(this.#place, { shapes: this.#isMarked ? [line] : [] });
   }
 
   /** @param {number} depth in the unit in which it is shown @param {any[]} told */

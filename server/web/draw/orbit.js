@@ -1,7 +1,7 @@
 // An orbit as seen looking downhole, the low side down, and the full spectrum of one.
 
-import { shown, title, unit } from "../data/units.js";
-import { inks } from "./plots.js";
+import { number, shown, title, unit } from "../data/units.js";
+import { inks } from "./picture/inks.js";
 
 /** Lines of a spectrum that are named in its picture. */
 const NAMED = 6;
@@ -38,7 +38,7 @@ export function orbitTrace(table, lowSide, line, name) {
     line: { width: 0.9, ...line },
     name,
     showlegend: name !== undefined,
-    hovertemplate: "%{x:.4~g}, %{y:.4~g}<extra></extra>",
+    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)}, ${number(y)}`,
   };
 }
 
@@ -56,7 +56,7 @@ export function holeTrace(clearance, colour = inks().soft) {
     x: angles.map((angle) => radius * Math.cos(angle)),
     y: angles.map((angle) => radius * Math.sin(angle)),
     line: { color: colour, width: 1.6 },
-    hoverinfo: "skip",
+    isSilent: true,
     showlegend: false,
   };
 }
@@ -130,7 +130,7 @@ export function spectrumTrace(table, line, name) {
     line: { width: 1, ...line },
     name,
     showlegend: name !== undefined,
-    hovertemplate: "%{x:.3~f} Hz: %{y:.4~g}<extra></extra>",
+    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} Hz: ${number(y)}`,
   };
 }
 
@@ -162,7 +162,7 @@ export function peaksTrace(table, marker) {
     ),
     marker: { size: 6, ...marker },
     showlegend: false,
-    hovertemplate: "line at %{x:.3~f} Hz: %{y:.4~g}<extra></extra>",
+    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `line at ${number(x)} Hz: ${number(y)}`,
   };
 }
 
@@ -232,7 +232,7 @@ export function spectrumLayout(spectra, isLog) {
       const height = Number(shown("amplitude", [peak.amplitude])[0]);
       return {
         x: peak.frequency,
-        y: isLog ? Math.log10(height) : height,
+        y: height,
         text: `${peak.of}${peak.frequency > 0 ? "+" : "−"}${Math.abs(peak.frequency).toFixed(2)} Hz`,
         showarrow: false,
         yanchor: "bottom",

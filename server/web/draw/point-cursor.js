@@ -1,7 +1,7 @@
 // A cursor over the points of a picture, for readers without a mouse: arrows move it, Enter opens the point.
 
 import { h } from "../ui/dom.js";
-import { adjust, inks } from "./plots.js";
+import { adjust } from "./plots.js";
 
 /**
  * @typedef {object} Place
@@ -60,25 +60,7 @@ export function keyboard(picture, open) {
     now = next(step);
     if (!now) return;
     element.textContent = now.text.replaceAll("<br>", ", ");
-    const { text, soft, panel } = inks();
-    const on = (/** @type {string} */ axis, /** @type {number} */ value) =>
-      /** @type {any} */ (picture)._fullLayout?.[axis].type === "log" ? Math.log10(value) : value;
-    void adjust(picture, {
-      annotations: [
-        {
-          x: on("xaxis", now.x),
-          y: on("yaxis", now.y),
-          text: now.text,
-          align: "left",
-          showarrow: true,
-          arrowhead: 6,
-          arrowcolor: text,
-          bgcolor: panel,
-          bordercolor: soft,
-          font: { color: text },
-        },
-      ],
-    });
+    adjust(picture, { annotations: [{ x: now.x, y: now.y, text: now.text, showarrow: true }] });
   });
 
   return {

@@ -1,7 +1,7 @@
 // Samples of a map: dots at their places, their values while cells are large, and rings about the least and the largest.
 
 import { number } from "../data/units.js";
-import { BLACK, WHITE } from "./colours.js";
+import { BLACK, WHITE } from "./picture/colours.js";
 
 /** Samples that have a dot, at most. */
 const DOTTED = 900;
@@ -25,14 +25,14 @@ const RING_PX = 22;
  * Range of an axis that ends shortly beyond the samples; undefined for a single value.
  * @param {number[]} values in shown units
  * @param {boolean} isLog
- * @returns {[number, number] | undefined} as plotly takes it: logarithms of a logarithmic axis
+ * @returns {[number, number] | undefined}
  */
 export function sampledRange(values, isLog) {
   const [least, largest] = [Math.min(...values), Math.max(...values)];
   if (!(least < largest) || (isLog && least <= 0)) return undefined;
   const [from, to] = isLog ? [Math.log10(least), Math.log10(largest)] : [least, largest];
   const spare = (to - from) * SPARE;
-  return [from - spare, to + spare];
+  return isLog ? [10 ** (from - spare), 10 ** (to + spare)] : [from - spare, to + spare];
 }
 
 /**
@@ -64,7 +64,7 @@ export function extremes(samples) {
 }
 
 /**
- * Dots and rings as plotly takes them.
+ * Traces of dots and rings.
  * @param {Sample[]} samples
  * @param {HTMLElement} place of the picture
  * @returns {any[]}
@@ -105,7 +105,6 @@ function dots(samples, ringed, place) {
     ),
     textfont: { color: samples.map(({ ink }) => ink), size: 12 },
     hovertext: samples.map(({ text }) => text),
-    hoverinfo: "text",
     customdata: samples.map(({ key }) => key),
     marker: {
       size: 6,
@@ -134,7 +133,7 @@ function rings(samples, inkOf, width) {
     name: "least and largest",
     x: samples.map(({ x }) => x),
     y: samples.map(({ y }) => y),
-    hoverinfo: "skip",
+    isSilent: true,
     customdata: samples.map(({ key }) => key),
     marker: {
       size: RING_PX,

@@ -1,7 +1,7 @@
 // The string in its hole, seen from where the reader turns it: a picture that is drawn anew in each frame.
 
 import { h } from "../ui/dom.js";
-import { colourOf } from "./colours.js";
+import { colourOf } from "./picture/colours.js";
 import { inks } from "./plots.js";
 import { seenFrom } from "./viewpoint.js";
 
@@ -41,7 +41,7 @@ const NEAR = 14;
  */
 
 /** @typedef {import("./viewpoint.js").View} View */
-/** @typedef {import("./svg-pen.js").Pen} Pen */
+/** @typedef {import("./picture/svg-pen.js").Pen} Pen */
 /** @typedef {(place: Vector) => number[]} Project */
 
 /** Keys of a picture. */

@@ -7,63 +7,44 @@ import { keep, rounded, route } from "../ui/router.js";
 const SAME = 1e-6;
 
 /**
- * Zoom of a picture in the link, as changes of its layout; axes that the layout lacks are left out.
+ * Zoom of a picture in the link, as ranges of axes in shown units; axes that the layout lacks are left out.
  * @param {string} key of the picture
  * @param {any} layout
- * @returns {Record<string, any>}
+ * @returns {Record<string, [number, number]>} by the axes' names in the layout
  */
 export function zoomed(key, layout) {
-  /** @type {Record<string, any>} */
-  const changes = {};
+  /** @type {Record<string, [number, number]>} */
+  const ranges = {};
   for (const part of (route().query.get(`zoom.${key}`) ?? "").split(",")) {
     const [name, ...texts] = part.split(":");
     const ends = texts.map(Number);
     if (!name || ends.some((end) => !Number.isFinite(end))) continue;
     const axis = `${name[0]}axis${name.slice(1)}`;
     if (!layout[axis] || ends.length !== 2 || ends[0] === ends[1]) continue;
-    const range = ends.map((end) => end / sizeOf(layout[axis]));
-    if (layout[axis].type !== "log") changes[`${axis}.range`] = range;
-    else if (Math.min(...range) > 0) changes[`${axis}.range`] = range.map(Math.log10);
+    if (layout[axis].type === "log" && !(Math.min(...ends) > 0)) continue;
+    const size = sizeOf(layout[axis]);
+    ranges[axis] = [ends[0] / size, ends[1] / size];
   }
-  return changes;
-}
-
-/**
- * Ranges of a picture before it is zoomed.
- * @param {any} place that plotly draws in
- * @param {any} layout
- * @returns {Record<string, any>}
- */
-export function wholeOf(place, layout) {
-  const full = place._fullLayout;
-  const axes = Object.keys(layout).filter((name) => /^[xy]axis\d*$/.test(name) && full[name]?.range);
-  return Object.fromEntries(axes.map((name) => [name, [...full[name].range]]));
+  return ranges;
 }
 
 /**
  * Keeps in the link how a picture is zoomed.
  * @param {string} key of the picture
- * @param {any} place that plotly draws in
- * @param {any} layout
- * @param {Record<string, any>} whole
+ * @param {import("./picture/picture.js").Picture} picture
  */
-export function keepZoom(key, place, layout, whole) {
-  const parts = Object.entries(wholeOf(place, layout)).flatMap(([name, now]) => {
-    const drawn = whole[name];
-    const width = Math.abs(drawn[1] - drawn[0]) || 1;
-    if (
-      now.every(
-        (/** @type {number} */ end, /** @type {number} */ index) =>
-          Math.abs(end - drawn[index]) <= SAME * width,
-      )
-    )
-      return [];
-    const served = now.map(
-      (/** @type {number} */ end) => sizeOf(layout[name]) * (layout[name].type === "log" ? 10 ** end : end),
-    );
-    return [[name.replace("axis", ""), ...served.map(rounded)].join(":")];
-  });
+export function keepZoom(key, { axes }) {
+  const zooms = [...axes.values()].filter(({ range, whole }) => !isSame(range, whole));
+  const parts = zooms.map(({ name, range, own }) =>
+    [name, ...range.map((end) => rounded(end * sizeOf(own)))].join(":"),
+  );
   keep({ [`zoom.${key}`]: parts.join(",") });
+}
+
+/** @param {number[]} range @param {number[]} whole */
+function isSame(range, whole) {
+  const width = Math.abs(whole[1] - whole[0]) || 1;
+  return range.every((end, order) => Math.abs(end - whole[order]) <= SAME * width);
 }
 
 /** Shows a picture as a whole again. @param {string} key */

@@ -2,7 +2,7 @@
 
 import { accuracyOf } from "../data/accuracy.js";
 import { get, Problem } from "../data/api.js";
-import { duration } from "../data/units.js";
+import { duration, number } from "../data/units.js";
 import { costsOf, decades, MOST_VERIFIED, studyCosts } from "../data/work-precision.js";
 import { canvas, draw, inks, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
@@ -99,10 +99,10 @@ export class AccuracyCost {
       name,
       x: costs.map(({ cpu }) => cpu),
       y: costs.map(({ error }) => 100 * error),
-      text: costs.map(({ text }) => text),
       marker: { size: 9, ...marker },
       showlegend: costs.length > 0,
-      hovertemplate: "%{text}: %{x:.3~g} s, %{y:.3~g} %<extra></extra>",
+      tell: (/** @type {{row: number, x: number, y: number}} */ { row, x, y }) =>
+        `${costs[row].text}: ${number(x, 3)} s, ${number(y, 3)} %`,
     });
     const [accuracies, rows] = [study?.accuracies ?? [], study?.others ?? []];
     const all = [...estimated, ...itself, ...others, ...accuracies, ...rows];
@@ -122,7 +122,7 @@ export class AccuracyCost {
         : []),
     ];
     const annotations = times.map(({ name, cpu_time }) => ({
-      x: Math.log10(cpu_time),
+      x: cpu_time,
       y: y[1],
       text: name,
       showarrow: false,

@@ -1,8 +1,8 @@
 // Contacts over depth and time: the normal force of the wall on every node, from the snapshots.
 
 import { largestShown, maxima } from "../data/decimation.js";
-import { shown, title, unit } from "../data/units.js";
-import { canvas, colourBar, draw, SCALE } from "../draw/plots.js";
+import { number, shown, title, unit } from "../data/units.js";
+import { canvas, colourBar, draw } from "../draw/plots.js";
 import { h } from "../ui/dom.js";
 
 /** Columns of the map; of more snapshots each column shows the largest force of several. */
@@ -19,6 +19,10 @@ export function contactMap(context, onTime, named) {
     named?.key ?? "contacts",
   );
   const caption = h("figcaption", {});
+  if (onTime)
+    place.addEventListener("pointclick", (event) =>
+      onTime(Number(/** @type {CustomEvent} */ (event).detail.points[0].x)),
+    );
   return {
     element: h(
       "div",
@@ -36,7 +40,7 @@ export function contactMap(context, onTime, named) {
       const { time, rows } = maxima(frames, "normal_force", every);
       const size = unit("normal_force").size;
       caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND}${onTime ? " Select a place to see the string at that time." : ""}`;
-      const shape = await draw(
+      await draw(
         place,
         [
           {
@@ -46,9 +50,9 @@ export function contactMap(context, onTime, named) {
             z: rows.map((row) => row.map((value) => value / size)),
             zmin: 0,
             zmax: most / size,
-            colorscale: SCALE,
             colorbar: colourBar(title("normal_force")),
-            hovertemplate: `%{x:.2f} s, %{y:.1f} ${unit("measured_depth").symbol}: %{z:.4~g} ${unit("normal_force").symbol}<extra></extra>`,
+            tell: (/** @type {{x: number, y: number, z: number}} */ { x, y, z }) =>
+              `${number(x)} s, ${number(y)} ${unit("measured_depth").symbol}: ${number(z)} ${unit("normal_force").symbol}`,
           },
         ],
         {
@@ -57,8 +61,6 @@ export function contactMap(context, onTime, named) {
         },
         context.signal,
       );
-      shape.removeAllListeners?.("plotly_click");
-      if (onTime) shape.on?.("plotly_click", (/** @type {any} */ event) => onTime(Number(event.points[0].x)));
     },
   };
 }

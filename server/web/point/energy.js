@@ -1,6 +1,6 @@
 // Energy by account: what was put in, where it went, and what the ledger misses.
 
-import { label, say, unit } from "../data/units.js";
+import { label, number, say, unit } from "../data/units.js";
 import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
 
@@ -118,22 +118,17 @@ function drawBars(place, columns, signal) {
       y: bars.flatMap(({ category }) => [category, category, category]),
       line: { color: LINES[group], width: BAR },
       showlegend: bars.length > 0,
-      hovertemplate: `%{y}<extra></extra>`,
+      tell: (/** @type {{y: string}} */ { y }) => y,
     };
   });
   const largest = Math.max(...named.map(({ end }) => end));
   const xaxis = {
     title: `energy [${symbol}], logarithmic`,
     type: "log",
-    range: [Math.log10(floor), Math.log10(largest) + 0.1],
+    range: [floor, largest * 10 ** 0.1],
   };
   const yaxis = {
     title: "",
-    automargin: true,
-    // Every name, however low the picture is.
-    tickmode: "linear",
-    dtick: 1,
-    categoryorder: "array",
     categoryarray: named.map(({ category }) => category).toReversed(),
   };
   return draw(
@@ -163,7 +158,7 @@ function drawCurves(place, columns, signal) {
       y: scaled(sizes, size),
       line: { color: LINES[order % LINES.length], dash, width: 1.4 },
       showlegend: true,
-      hovertemplate: `${words}: %{y:.4~g} ${symbol}<extra></extra>`,
+      tell: (/** @type {{y: number}} */ { y }) => `${words}: ${number(y)} ${symbol}`,
     };
   });
   return draw(

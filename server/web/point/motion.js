@@ -70,8 +70,7 @@ class NodeMotion {
   #whole;
   /** @type {Windowed | undefined} */
   #windowed;
-  #isDraggable = false;
-  /** Painter of the orbit while a window is dragged. @type {Brush | null} */
+  /** Parts of the orbit while a window is dragged. @type {Brush | null} */
   #brush = null;
   /** The window that is being dragged. @type {[number, number] | null} */
   #dragged = null;
@@ -90,6 +89,12 @@ class NodeMotion {
     this.#lines = new SpectralLines(context, this.choices);
     this.#pictures = this.#picturesPart();
     this.#rested = debounced(() => this.#lookAtDragged(), REST_MS, signal);
+    dragWindow(
+      this.#history,
+      (range) => this.#follow(range),
+      (range) => this.#release(range),
+      signal,
+    );
     this.element = h("div", {}, this.#controls.element, this.#wrong, this.#refused, this.#pictures);
   }
 
@@ -224,7 +229,7 @@ class NodeMotion {
       y: shown("radius", values),
       name,
       line: { color: LINES[colour], width: 1 },
-      hovertemplate: "%{x:.3f} s: %{y:.4~g}<extra></extra>",
+      tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
     });
     this.#history.setAttribute("aria-label", `History of ${words}`);
     const layout = {
@@ -235,21 +240,8 @@ class NodeMotion {
       yaxis: { title: `displacement [${unit("radius").symbol}]`, quantity: "radius" },
       shapes: [this.#shade()],
     };
-    const { signal } = this.#context;
-    const shape = await draw(
-      this.#history,
-      [line("from the low side up", up, 0), line("across the hole", across, 1)],
-      layout,
-      signal,
-    );
-    if (shape !== this.#history || this.#isDraggable || signal.aborted) return;
-    this.#isDraggable = true;
-    dragWindow(
-      this.#history,
-      (range) => this.#follow(range),
-      (range) => this.#release(range),
-      signal,
-    );
+    const traces = [line("from the low side up", up, 0), line("across the hole", across, 1)];
+    await draw(this.#history, traces, layout, this.#context.signal);
   }
 
   /** The window as a shape of the history. */
@@ -309,7 +301,6 @@ class NodeMotion {
       overlaying: "y",
       side: "right",
       showgrid: false,
-      tickmode: "auto",
     };
     await draw(
       this.#rotation,
@@ -335,7 +326,7 @@ class NodeMotion {
   async #drawWindow(asked) {
     const isNewest = this.#beginWindow();
     this.#wrong.textContent = "";
-    void adjust(this.#history, { shapes: [this.#shade()] });
+    adjust(this.#history, { shapes: [this.#shade()] });
     try {
       const [cut, lines, statistics] = await (asked ?? this.#tablesOf(this.choices.window));
       if (!isNewest()) return;
@@ -358,18 +349,22 @@ class NodeMotion {
     const { columns } = this.#whole;
     if (!this.#brush) {
       this.#brush = new Brush(
-        this.#orbit,
         orbitTrace(this.#whole, this.#place().lowSide, { color: LINES[0] }),
         columns.time,
       );
-      void adjust(this.#orbit, this.#brush.layout());
+      adjust(this.#orbit, { ranges: this.#brush.ranges() });
     }
-    this.#brush.paint(range);
+    this.#showOrbit(this.#brush.part(range));
     const rough = orbitStatistics(columns, ...this.#brush.rows(range));
     if (rough)
       this.#showStatistics({ from: range[0], to: range[1] }, (name) => `≈ ${say(name, rough[name], 3)}`, "");
     this.#dragged = range;
     this.#rested();
+  }
+
+  /** Shows the orbit of a window that is being dragged. @param {any} trace */
+  #showOrbit(trace) {
+    adjust(this.#orbit, { traces: [holeTrace(this.#place().clearance), trace] });
   }
 
   #lookAtDragged() {
@@ -385,7 +380,7 @@ class NodeMotion {
     if (!this.#isEnough(from, to)) return;
     const [cut, lines, statistics] = await this.#tablesOf({ from, to });
     if (this.#dragged !== range) return;
-    this.#brush?.paintTrace(orbitTrace(cut, this.#place().lowSide, { color: LINES[0] }));
+    this.#showOrbit(orbitTrace(cut, this.#place().lowSide, { color: LINES[0] }));
     this.#showStatistics(
       { from, to },
       (name) => say(name, statistics.columns[name][0]),
@@ -397,7 +392,6 @@ class NodeMotion {
   /** Ends a drag. @param {[number, number] | null} range */
   #release(range) {
     this.#dragged = null;
-    this.#brush?.end();
     this.#brush = null;
     if (range && this.#isEnough(...range)) {
       this.#choose(...range);

@@ -1,9 +1,9 @@
 // Quantities over depth, side by side with one depth cursor.
 
 import { roomyRange } from "../data/columns.js";
-import { label, meaning, say, shown, title, unit } from "../data/units.js";
+import { label, meaning, number, say, shown, title, unit } from "../data/units.js";
 import { DepthCursor, nearest } from "../draw/depth-cursor.js";
-import { canvas, draw, inks, LINES } from "../draw/plots.js";
+import { canvas, draw, LINES } from "../draw/plots.js";
 import { h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -92,7 +92,6 @@ export function scrolled(place) {
  * @param {AbortSignal} signal
  */
 export async function drawProfiles(place, names, points, signal) {
-  const { soft } = inks();
   place.style.minWidth = `${names.length * LEAST_WIDTH}px`;
   const traces = names.flatMap((name, column) =>
     points.flatMap((point, order) => {
@@ -112,7 +111,7 @@ export async function drawProfiles(place, names, points, signal) {
           legendgroup: String(order),
           showlegend: column === 0 && points.length > 1,
           line: { color: point.colour, dash: point.dash, width: 1.4 },
-          hovertemplate: "%{x:.4~g}<extra></extra>",
+          tell: (/** @type {{x: number}} */ { x }) => number(x).replace("-", "−"),
         },
       ];
     }),
@@ -130,25 +129,18 @@ export async function drawProfiles(place, names, points, signal) {
   const gap = Math.min(0.03, width / 6);
   const layout = {
     hovermode: "y",
-    hoversubplots: "axis",
     margin: { l: 64, r: 12, t: points.length > 1 ? 40 : 12, b: 60 },
     yaxis: {
       title: title("measured_depth"),
       quantity: "measured_depth",
       ...(depths ? { range: depths.toReversed() } : { autorange: "reversed" }),
-      showspikes: true,
-      spikemode: "across",
-      spikesnap: "cursor",
-      spikethickness: 1,
-      spikecolor: soft,
-      spikedash: "solid",
       zeroline: false,
     },
     ...Object.fromEntries(
       names.map((name, column) => [
         `xaxis${column ? column + 1 : ""}`,
         {
-          title: { text: wrapped(title(name)), font: { size: 12 } },
+          title: wrapped(title(name)),
           quantity: name,
           domain: [
             column * width + (column ? gap : 0),
@@ -223,16 +215,13 @@ export function profiles(context) {
     const needed = new Set(names.map(tableOf));
     await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
     if (!isNewest()) return;
-    const shape = await drawProfiles(
+    await drawProfiles(
       place,
       names,
       [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }],
       context.signal,
     );
-    cursor.follow(
-      shape,
-      nodeDepths(names, (name) => tables[tableOf(name)]),
-    );
+    cursor.follow(nodeDepths(names, (name) => tables[tableOf(name)]));
   }
 
   return {
@@ -277,7 +266,7 @@ export function reading(names, table, depth, told) {
     .filter((name) => table(name)?.columns[name])
     .map((name) => {
       const { value, depth: own } = overDepth(name, table(name));
-      const seen = told.find((point) => point.data.meta === name)?.x ?? value[nearest(own, depth)];
+      const seen = told.find((point) => point.trace.meta === name)?.x ?? value[nearest(own, depth)];
       return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
     });
   return words.join(" · ");

@@ -3,7 +3,7 @@
 import { Problem } from "../data/api.js";
 import { keptWindow } from "../data/motion-requests.js";
 import { frames, snapshotsOf } from "../data/snapshots.js";
-import { say, shown, title } from "../data/units.js";
+import { number, say, shown, title } from "../data/units.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
 import { h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -209,7 +209,7 @@ export function rotation(context) {
           yaxis: quantity === "torque" ? "y2" : "y",
           name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`,
           line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 },
-          hovertemplate: "%{x:.2f} s: %{y:.4~g}<extra></extra>",
+          tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} s: ${number(y)}`,
         })),
         { showlegend: true, ...twoPanels() },
         context.signal,

@@ -2,8 +2,9 @@
 
 import { Problem } from "../data/api.js";
 import { nodeInLink, selectedNode } from "../data/motion-requests.js";
-import { say, shown, title, unit } from "../data/units.js";
-import { canvas, colourBar, draw, inks, logTicks, SCALE } from "../draw/plots.js";
+import { number, say, shown, title, unit } from "../data/units.js";
+import { logTicks } from "../draw/picture/ticks.js";
+import { canvas, colourBar, draw, inks } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { pythonNode } from "../ui/snippets.js";
@@ -230,10 +231,10 @@ export async function drawSpectrogram(place, table, { isLog, range, most }, sign
         z,
         zmin: least,
         zmax: largest,
-        colorscale: SCALE,
         customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)),
         colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) },
-        hovertemplate: `%{x:.2f} s, %{y:.2f} Hz: %{customdata:.3~g} ${unit("amplitude").symbol}<extra></extra>`,
+        tell: (/** @type {{x: number, y: number, customdata: number}} */ { x, y, customdata }) =>
+          `${number(x)} s, ${number(y)} Hz: ${number(customdata, 3)} ${unit("amplitude").symbol}`,
       },
     ],
     {

@@ -1,9 +1,8 @@
 // Strings in their holes as a file: all that is shown, one string below the other, with the scale, and the time of strings in motion.
 
-import { colourOf } from "../draw/colours.js";
-import { inks } from "../draw/plots.js";
-import { SvgPen } from "../draw/svg-pen.js";
-import { download, h } from "../ui/dom.js";
+import { colourOf } from "../draw/picture/colours.js";
+import { inks } from "../draw/picture/inks.js";
+import { saveDrawing } from "../draw/picture/save.js";
 
 /** Height of the scale below the picture, and cells of its colours. */
 const [SCALE_HEIGHT, CELLS] = [44, 120];
@@ -24,20 +23,10 @@ export function saveStrings(name, format, actors, words) {
     (sum, { scene }) => sum + scene.element.clientHeight,
     words ? SCALE_HEIGHT : 0,
   );
-  if (format === "svg") {
-    const pen = new SvgPen(width, height);
-    drawFile(pen, actors, words, width, height);
-    download(new Blob([String(pen)], { type: "image/svg+xml" }), `${name}.svg`);
-    return;
-  }
-  const canvas = h("canvas", { width: 2 * width, height: 2 * height });
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  pen.scale(2, 2);
-  drawFile(pen, actors, words, width, height);
-  canvas.toBlob((blob) => blob && download(blob, `${name}.png`), "image/png");
+  saveDrawing(name, format, { width, height }, (pen) => drawFile(pen, actors, words, width, height));
 }
 
-/** @param {import("../draw/svg-pen.js").Pen} pen @param {Actor[]} actors @param {Words | null} words @param {number} width @param {number} height */
+/** @param {import("../draw/picture/svg-pen.js").Pen} pen @param {Actor[]} actors @param {Words | null} words @param {number} width @param {number} height */
 function drawFile(pen, actors, words, width, height) {
   const { panel, text } = inks();
   pen.fillStyle = panel;
@@ -53,7 +42,7 @@ function drawFile(pen, actors, words, width, height) {
   if (words) drawScale(pen, words, width);
 }
 
-/** @param {import("../draw/svg-pen.js").Pen} pen @param {Words} words @param {number} width */
+/** @param {import("../draw/picture/svg-pen.js").Pen} pen @param {Words} words @param {number} width */
 function drawScale(pen, words, width) {
   pen.font = "13px system-ui, sans-serif";
   pen.textBaseline = "middle";

@@ -1,8 +1,7 @@
 // A picture of the points that a request would become, over two of their parameters.
 
-import { label, shown, title } from "../data/units.js";
-import { MANY } from "../draw/cloud.js";
-import { canvas, draw, LINES } from "../draw/plots.js";
+import { label, number, shown, title } from "../data/units.js";
+import { canvas, draw, LINES, MANY } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 
@@ -59,7 +58,8 @@ export class Preview {
       x: values(x),
       y: y ? values(y) : points.map(() => 0),
       marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 },
-      hoverinfo: y ? "x+y" : "x",
+      tell: (/** @type {{x: number, y: number}} */ { x: across, y: up }) =>
+        y ? `${number(across)}, ${number(up)}` : number(across),
     };
     await draw(
       this.#picture,

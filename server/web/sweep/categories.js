@@ -2,7 +2,7 @@
 
 import { rankOf } from "../data/judgement.js";
 import { distinct } from "../data/sweep-table.js";
-import { classColour, stateColour } from "../draw/colours.js";
+import { classColour, stateColour } from "../draw/picture/colours.js";
 
 /** Column with the class of each point. */
 export const CLASS = "class";

@@ -5,7 +5,7 @@ import { Biases } from "../data/biases.js";
 import { ends } from "../data/grid-layers.js";
 import { distinct, SHORT, SweepTable, sweptBy } from "../data/sweep-table.js";
 import { label, number, say, title, unit } from "../data/units.js";
-import { BLACK, WHITE } from "../draw/colours.js";
+import { BLACK, DIVERGING, WHITE } from "../draw/picture/colours.js";
 import { canvas, colourBar, DASHES, draw, laidOut, LINES } from "../draw/plots.js";
 import { sampledRange, sampleTraces } from "../draw/samples.js";
 import { choice, debounced, fill, h } from "../ui/dom.js";
@@ -14,8 +14,6 @@ import { attend } from "../ui/notices.js";
 import { go, link } from "../ui/router.js";
 import { preferred, undelayed } from "./part.js";
 
-/** Blue below, red above, apart by lightness as well for those who cannot tell them. */
-const DIVERGING = "RdBu";
 /** Further parameters that are named, at most, if they differ. */
 const DIFFERENCES = 6;
 /** Fields of a scenario that do not change what is simulated. */
@@ -76,6 +74,10 @@ class Difference {
     });
     this.#searched = h("label", { class: "field" }, h("span", {}, "Search sweeps"), this.#search);
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure);
+    this.#place.addEventListener("pointclick", (event) => {
+      const points = /** @type {CustomEvent} */ (event).detail.points[0].customdata;
+      if (typeof points === "string") go(link(["compare"], { points, view: "profiles" }));
+    });
   }
 
   /** The other sweep with its columns that are shown. */
@@ -330,12 +332,7 @@ class Difference {
           yaxis: { title: context.depths.title(colour), quantity: colour, domain: [0.45, 1] },
           yaxis2: { title: name, ...(this.#isRelative ? {} : { quantity: colour }), domain: [0, 0.36] },
         };
-    const shape = await draw(this.#place, traces, layout, context.signal);
-    shape.removeAllListeners?.("plotly_click");
-    shape.on?.("plotly_click", (/** @type {any} */ event) => {
-      const points = event.points[0]?.customdata;
-      if (typeof points === "string") go(link(["compare"], { points, view: "profiles" }));
-    });
+    await draw(this.#place, traces, layout, context.signal);
   }
 
   /** Writes the caption. @param {Pair[]} pairs @param {Shown} shown @param {Other} other @param {string} symbol of the difference */
@@ -480,9 +477,7 @@ function cellTrace(pairs, { x, y, spans }, name, { text, keys }) {
     z: cells,
     text: hover,
     customdata: points,
-    hoverinfo: "text",
     colorscale: DIVERGING,
-    reversescale: false,
     zmin: -largest,
     zmax: largest,
     colorbar: colourBar(name),
@@ -545,7 +540,6 @@ function lineTraces(pairs, x, colour, [first, second], { text, keys }) {
     y: order.map((index) => value(pairs[index])),
     text: order.map((index) => text[index]),
     customdata: order.map((index) => keys[index]),
-    hoverinfo: "text",
     line: { color: LINES[place], dash: DASHES[place] },
     ...more,
   });

@@ -5,20 +5,9 @@ import { theme } from "../data/settings.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
-import { MANY } from "../draw/cloud.js";
-import { BLACK, inkOn, inkOnClass, WHITE } from "../draw/colours.js";
-import {
-  adjust,
-  canvas,
-  colourBar,
-  draw,
-  inks,
-  laidOut,
-  lineScale,
-  LINES,
-  logTicks,
-  SCALE,
-} from "../draw/plots.js";
+import { BLACK, inkOn, inkOnClass, WHITE } from "../draw/picture/colours.js";
+import { logTicks } from "../draw/picture/ticks.js";
+import { adjust, canvas, colourBar, draw, inks, laidOut, lineScale, LINES, MANY } from "../draw/plots.js";
 import { keyboard } from "../draw/point-cursor.js";
 import { extremes, sampledRange, sampleTraces } from "../draw/samples.js";
 import { choice, fill, h } from "../ui/dom.js";
@@ -108,13 +97,21 @@ export class SweepMap {
     this.element = h("div", {}, this.#controls, this.#empty, this.#figure, this.#region.element);
     this.#region.element.addEventListener("closed", () => {
       this.#sayRegion();
-      void adjust(this.#place, { dragmode: "zoom", selections: [] });
+      adjust(this.#place, { dragmode: "zoom" });
+    });
+    this.#place.addEventListener("chosen", (event) => {
+      const { detail } = /** @type {CustomEvent} */ (event);
+      if (detail) this.#chooseRegion(detail);
+    });
+    this.#place.addEventListener("pointclick", (event) => {
+      const ordinal = /** @type {CustomEvent} */ (event).detail.points[0].customdata;
+      if (typeof ordinal === "number") context.open(ordinal, chosenIn(context, own).colour);
     });
   }
 
   #openRegion() {
     this.#chooseRegion();
-    void adjust(this.#place, { dragmode: "select" });
+    adjust(this.#place, { dragmode: "select" });
   }
 
   #sayRegion() {
@@ -285,7 +282,6 @@ export class SweepMap {
       y: points.map((point) => point.y),
       text: points.map(({ text }) => text),
       customdata: order.map((position) => ordinals[rows[position]]),
-      hoverinfo: "text",
       marker: {
         size: words ? 12 : 8,
         color: words ? order.map((position) => ofWord(String(values[rows[position]]))) : LINES[0],
@@ -299,9 +295,7 @@ export class SweepMap {
       yaxis: {
         title: this.#context.depths.title(colour),
         quantity: colour,
-        ...(words
-          ? { type: "category", categoryorder: "array", categoryarray: words.map(spoken).reverse() }
-          : { type: isLog ? "log" : "linear" }),
+        ...(words ? { categoryarray: words.map(spoken).reverse() } : { type: isLog ? "log" : "linear" }),
       },
     });
   }
@@ -351,22 +345,8 @@ export class SweepMap {
 
   /** @param {any[]} traces @param {any} layout */
   async #draw(traces, layout) {
-    const chooseRegion = this.#chooseRegion;
-    const shape = await draw(
-      this.#place,
-      traces,
-      { ...layout, dragmode: this.#region.isOpen ? "select" : "zoom" },
-      this.#context.signal,
-    );
-    shape.removeAllListeners?.("plotly_click");
-    shape.removeAllListeners?.("plotly_selected");
-    shape.on?.("plotly_selected", (/** @type {any} */ event) => {
-      if (event?.range) chooseRegion(event.range);
-    });
-    shape.on?.("plotly_click", (/** @type {any} */ event) => {
-      const ordinal = event.points[0]?.customdata;
-      if (typeof ordinal === "number") this.#context.open(ordinal, chosenIn(this.#context, this.#own).colour);
-    });
+    const dragmode = this.#region.isOpen ? "select" : "zoom";
+    await draw(this.#place, traces, { ...layout, dragmode }, this.#context.signal);
   }
 }
 
@@ -536,7 +516,7 @@ function coloursOf({ depths }, { colour, isLog }, { rows, values }, at) {
   return {
     z,
     words: false,
-    scale: { colorscale: SCALE, ...(finite.length ? { zmin: least, zmax: largest } : {}) },
+    scale: { ...(finite.length ? { zmin: least, zmax: largest } : {}) },
     bar: { ...colourBar(depths.title(colour)), ...(isLog && finite.length ? logTicks(least, largest) : {}) },
     count: 1,
   };
@@ -574,14 +554,12 @@ function cellTraces(
       z: cells((position) => z[position], null),
       text: cells((position) => texts[position], ""),
       customdata: cells((position) => ordinals[rows[position]], null),
-      hoverinfo: "text",
       hoverongaps: order === 0,
       colorbar: bar,
       showscale: order === 0,
       ...scale,
       xgap: gap,
       ygap: gap,
-      contours: { coloring: "heatmap" },
       line: { color: inks().panel, width: 0.7 },
     };
   });
@@ -618,7 +596,7 @@ function samplesOf(places, colour, { rows, values }, { colours: { z, words, scal
 }
 
 /**
- * Range of an axis about the samples of a grid; undefined if plotly finds it.
+ * Range of an axis about the samples of a grid; undefined of a single value.
  * @param {Context} context @param {string} name @param {number[]} rows @param {Values} column @param {Scaled} at
  */
 function rangeOf({ spans }, name, rows, column, at) {
@@ -668,7 +646,6 @@ function markTrace(
     y: rows.map((index) => at(y, ys[index])),
     text: texts,
     customdata: rows.map((index) => ordinals[index]),
-    hoverinfo: "text",
     marker,
   };
 }
@@ -692,7 +669,6 @@ function crosses(name, marked, marker, { x, y }, { ordinals, xs, ys, doubts }, a
     y: marked.map((index) => at(y, ys[index])),
     customdata: marked.map((index) => ordinals[index]),
     text: marked.map((index) => `point ${ordinals[index]}: ${doubts(index) || name}`),
-    hoverinfo: "text",
     marker: { color: "#d55e00", ...marker, size: isMany ? 4 : 9 },
     showlegend: true,
   };

@@ -5,6 +5,7 @@ import { nearestRow, partOf, rangesOf, valueAtPart } from "../data/nearest-point
 import { label, say, sayParameters, unit } from "../data/units.js";
 import { classWord } from "../draw/class-word.js";
 import { Overview } from "../draw/overview.js";
+import { pictureOf } from "../draw/picture/picture.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
@@ -72,9 +73,8 @@ export class OperatingPoint {
     this.#picture = picture;
     this.#hold = hold;
     this.#rested = debounced(() => attend(this.#showPictures(), context.signal), REST_MS, context.signal);
-    const observer = new ResizeObserver(() => this.#moveCross());
-    observer.observe(picture);
-    context.signal.addEventListener("abort", () => observer.disconnect());
+    // Zooming and resizing move the place of the point in the picture.
+    picture.addEventListener("painted", () => this.#moveCross());
   }
 
   /**
@@ -174,12 +174,11 @@ export class OperatingPoint {
 
   /** @param {PointerEvent} event */
   #drag({ clientX, clientY }) {
-    const layout = /** @type {any} */ (this.#picture)._fullLayout;
     const { left, top } = this.#picture.getBoundingClientRect();
-    const pixels = [clientX - left - layout.xaxis._offset, clientY - top - layout.yaxis._offset];
+    const pixels = [clientX - left, clientY - top];
     this.#moveOnMap((span, side) => {
-      const axis = side ? layout.yaxis : layout.xaxis;
-      return partOf(span, axis.p2d(pixels[side]) * unit(span.name).size);
+      const axis = pictureOf(this.#picture)?.axis(side ? "yaxis" : "xaxis");
+      return axis ? partOf(span, axis.toValue(pixels[side]) * unit(span.name).size) : 0;
     });
   }
 
@@ -193,20 +192,17 @@ export class OperatingPoint {
 
   /** Puts the cross on the map, once that is drawn. */
   #moveCross() {
-    const layout = /** @type {any} */ (this.#picture)._fullLayout;
+    const picture = pictureOf(this.#picture);
+    const [across, up] = [picture?.axis("xaxis"), picture?.axis("yaxis")];
     const [x, y] = this.#sides;
-    const isDrawn = Boolean(layout?.xaxis && x && y);
+    const isDrawn = across && up && x && y;
     this.#cross.hidden = !isDrawn;
-    if (!isDrawn || !x || !y) return;
-    if (!this.#cross.isConnected) {
-      this.#picture.after(this.#cross);
-      // Zooming moves the place of the point in the picture.
-      /** @type {any} */ (this.#picture).on("plotly_relayout", () => this.#moveCross());
-    }
-    const at = (/** @type {any} */ axis, /** @type {Span} */ { name }) =>
-      axis._offset + axis.d2p((this.#place.get(name) ?? 0) / unit(name).size);
-    this.#cross.style.left = `${this.#picture.offsetLeft + at(layout.xaxis, x)}px`;
-    this.#cross.style.top = `${this.#picture.offsetTop + at(layout.yaxis, y)}px`;
+    if (!isDrawn) return;
+    if (!this.#cross.isConnected) this.#picture.after(this.#cross);
+    const at = (/** @type {import("../draw/picture/axis.js").Axis} */ axis, /** @type {Span} */ { name }) =>
+      axis.toPixel((this.#place.get(name) ?? 0) / unit(name).size);
+    this.#cross.style.left = `${this.#picture.offsetLeft + at(across, x)}px`;
+    this.#cross.style.top = `${this.#picture.offsetTop + at(up, y)}px`;
   }
 
   #row() {

@@ -1,9 +1,11 @@
 // The picture of parallel coordinates: lines on a canvas, and axes over it that are brushed, moved and read.
 
 import { number } from "../data/units.js";
-import { inkedScale, inks } from "../draw/plots.js";
-import { roundValues, tickText } from "../draw/ticks.js";
-import { download, h } from "../ui/dom.js";
+import { FONT, inks } from "../draw/picture/inks.js";
+import { saveSvg, saveSvgAsPng } from "../draw/picture/save.js";
+import { roundValues, tickText } from "../draw/picture/ticks.js";
+import { inkedScale } from "../draw/plots.js";
+import { h } from "../ui/dom.js";
 import { axisNames, LINE_PX } from "./axis-names.js";
 import { drawnEnds, endsOf, joined, keptLines, nearestLine, partOf } from "./parallel-lines.js";
 
@@ -20,7 +22,8 @@ const STEPS = 64;
 const DENSE = 1000;
 /** Width of the bar of colours, and its distance from the last axis [pixels]. */
 const [BAR, BAR_LEFT] = [14, 60];
-const FONT = 'system-ui, "Segoe UI", "Noto Sans", sans-serif';
+/** Name of a saved file. */
+const NAME = "parallel-coordinates";
 
 /** @typedef {import("./parallel-lines.js").Dimension} Dimension */
 /** @typedef {{x: number, heights: Float64Array, ends: [number, number], dimension: Dimension}} Axis */
@@ -96,14 +99,8 @@ export class ParallelPicture {
     const ground = svg("rect", { width, height, fill: inks().panel });
     file.prepend(ground, svg("image", { width, height, href: this.#screen.toDataURL() }));
     const text = new XMLSerializer().serializeToString(file);
-    if (format === "svg")
-      return download(new Blob([text], { type: "image/svg+xml" }), "parallel-coordinates.svg");
-    const picture = new Image();
-    picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
-    await picture.decode();
-    const canvas = h("canvas", { width: 2 * width, height: 2 * height });
-    canvas.getContext("2d")?.drawImage(picture, 0, 0, 2 * width, 2 * height);
-    canvas.toBlob((blob) => blob && download(blob, "parallel-coordinates.png"), "image/png");
+    if (format === "svg") saveSvg(NAME, text);
+    else await saveSvgAsPng(NAME, text, { width, height });
   }
 
   /** Draws anew in the next frame. */

@@ -2,8 +2,7 @@
 
 import { isText } from "../data/sweep-table.js";
 import { label, say, shown } from "../data/units.js";
-import { MANY } from "../draw/cloud.js";
-import { canvas, colourBar, draw, lineScale, LINES } from "../draw/plots.js";
+import { canvas, colourBar, draw, lineScale, LINES, MANY } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -57,19 +56,15 @@ export function scatter(context) {
     ) => ({
       title: context.depths.title(name),
       quantity: name,
-      type: isText(values) ? "category" : isLog ? "log" : "linear",
-      ...(name === CLASS ? { categoryorder: "array", categoryarray: wordsOf(name, values) } : {}),
+      type: isLog && !isText(values) ? "log" : "linear",
+      ...(name === CLASS ? { categoryarray: wordsOf(name, values) } : {}),
     });
     const layout = { xaxis: axis(x, xs, chosen.isLogX), yaxis: axis(y, ys, chosen.isLogY) };
-    const shape = await draw(
-      place,
-      tracesOf(context, chosen, { ordinals, xs, ys, colours }),
-      layout,
-      context.signal,
-    );
-    shape.removeAllListeners?.("plotly_click");
-    shape.on?.("plotly_click", (/** @type {any} */ event) => context.open(event.points[0].customdata));
+    await draw(place, tracesOf(context, chosen, { ordinals, xs, ys, colours }), layout, context.signal);
   }
+  place.addEventListener("pointclick", (event) =>
+    context.open(/** @type {CustomEvent} */ (event).detail.points[0].customdata),
+  );
 
   return {
     element: h("div", {}, controls, h("figure", {}, place, caption)),
@@ -127,7 +122,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
     );
   // Of many points, only the one next to the mouse is put into words.
   const text = isMany ? undefined : ordinals.map((_, index) => tell(index));
-  const base = { type: isMany ? "dots" : "scatter", mode: "markers", hoverinfo: "text" };
+  const base = { type: isMany ? "dots" : "scatter", mode: "markers" };
   const size = isMany ? 4 : 8;
   if (!isText(colours)) {
     const color = shown(colour, /** @type {(number | null)[]} */ (colours));
@@ -137,7 +132,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
         x: atX,
         y: atY,
         text,
-        tell: isMany ? tell : undefined,
+        tell: isMany ? (/** @type {{row: number}} */ { row }) => tell(row) : undefined,
         customdata: ordinals,
         marker: { size, color, colorscale: lineScale(), colorbar: colourBar(depths.title(colour)) },
       },
@@ -151,7 +146,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
       x: rows.map((index) => atX[index]),
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
-      tell: isMany ? (/** @type {number} */ row) => tell(rows[row]) : undefined,
+      tell: isMany ? (/** @type {{row: number}} */ { row }) => tell(rows[row]) : undefined,
       customdata: rows.map((index) => ordinals[index]),
       marker: {
         size,

@@ -2,7 +2,7 @@
 
 import { LEAST_POINTS, shares } from "../data/sensitivity.js";
 import { label, title, unit } from "../data/units.js";
-import { canvas, draw, LINES } from "../draw/plots.js";
+import { canvas, draw, laidOut, LINES } from "../draw/plots.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -176,14 +176,12 @@ function drawShares(place, axes, found, signal) {
     title: "share of the variance (Sobol index)",
     range: [Math.min(0, ...firsts, ...shownEnds) - 0.01, Math.max(1, ...shownEnds) + 0.02],
   };
-  const yaxis = { title: "", gridcolor: "rgba(0,0,0,0)", automargin: true };
-  return draw(
-    place,
-    traces,
-    { xaxis, yaxis, barmode: "group", margin: { l: 20, r: 16, t: 30, b: 50 } },
-    signal,
-  );
+  const yaxis = { title: "", showgrid: false };
+  return draw(place, traces, { xaxis, yaxis, margin: { l: 20, r: 16, t: 30, b: 50 } }, signal);
 }
+
+/** Room for the numbers of a panel's axis, and the largest part of its width that they take [pixels]. */
+const [NUMBERS, MOST] = [48, 0.4];
 
 /**
  * Draws the mean result over each parameter, side by side on one scale.
@@ -192,17 +190,31 @@ function drawShares(place, axes, found, signal) {
  * @param {string} result
  * @param {Share[]} found
  */
-function drawCurves(place, { axes, spans, depths, signal }, result, found) {
+async function drawCurves(place, { axes, spans, depths, signal }, result, found) {
   const numbered = (/** @type {string} */ name, /** @type {number} */ index) =>
     `${name}${index ? index + 1 : ""}`;
+  await laidOut(place, signal);
+  // Before each panel but the first, whose numbers stand in the margin.
+  const free = Math.min(MOST, (NUMBERS * axes.length) / place.clientWidth);
   const layouts = axes.flatMap((axis, index) => [
     [
       numbered("xaxis", index),
-      { title: title(axis), quantity: axis, type: spans[axis]?.scale === "log" ? "log" : "linear" },
+      {
+        title: title(axis),
+        quantity: axis,
+        type: spans[axis]?.scale === "log" ? "log" : "linear",
+        domain: [(index + (index ? free : 0)) / axes.length, (index + 1) / axes.length],
+        anchor: numbered("y", index),
+      },
     ],
     [
       numbered("yaxis", index),
-      { title: index ? "" : depths.title(result), quantity: result, matches: index ? "y" : undefined },
+      {
+        title: index ? "" : depths.title(result),
+        quantity: result,
+        matches: index ? "y" : undefined,
+        anchor: numbered("x", index),
+      },
     ],
   ]);
   const traces = axes.map((axis, index) => {
@@ -217,11 +229,9 @@ function drawCurves(place, { axes, spans, depths, signal }, result, found) {
       xaxis: numbered("x", index),
       yaxis: numbered("y", index),
       name: label(axis),
-      hoverinfo: "x+y",
     };
   });
   const layout = {
-    grid: { rows: 1, columns: axes.length, pattern: "independent" },
     showlegend: false,
     ...Object.fromEntries(layouts),
   };

@@ -45,8 +45,8 @@ Opens = Callable[..., Page]
 
 
 def drawn(page: Page, name: str) -> Locator:
-    """A picture, once plotly has drawn it."""
-    picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator(".main-svg"))
+    """A picture, once it is drawn."""
+    picture = page.get_by_role("figure", name=re.compile(name)).filter(has=page.locator("canvas.picture"))
     expect(picture.first).to_be_visible(timeout=30_000)
     return picture.first
 
@@ -157,7 +157,24 @@ def clock(page: Page) -> float:
     return float(str(page.locator("output").text_content()).removesuffix(" s"))
 
 
+def written(picture: Locator) -> list[dict[str, Any]]:
+    """Words of a picture with their ends [pixels]: in a saved file they are where the picture has them."""
+    read = """place => {
+        const file = document.createElement("div");
+        file.append(new DOMParser().parseFromString(place.picture.svg(), "image/svg+xml").documentElement);
+        Object.assign(file.style, { position: "fixed", left: 0, top: 0 });
+        document.body.append(file);
+        const words = [...file.querySelectorAll("text")].map((text) => {
+            const { left, right, top, bottom } = text.getBoundingClientRect();
+            return { text: text.textContent, left, right, top, bottom };
+        });
+        file.remove();
+        return words;
+    }"""
+    return list(picture.evaluate(read))
+
+
 def trace(picture: Locator, number: int) -> dict[str, Any]:
-    """Data that plotly drew."""
-    read = "(place, number) => { const { x, y, z } = place.data[number]; return { x: [...x], y: [...y], z }; }"
+    """Data that a picture shows."""
+    read = "({ picture }, at) => { const { x, y, z } = picture.traces[at]; return { x: [...x], y: [...y], z }; }"
     return dict(picture.evaluate(read, number))

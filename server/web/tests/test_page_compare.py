@@ -52,7 +52,7 @@ def key(sweep: Sweep, ordinal: int = 1) -> str:
 
 def names(page: Page, picture: str) -> list[str]:
     """The lines that a picture has in its legend."""
-    read = "place => place.data.filter(trace => trace.showlegend).map(trace => trace.name)"
+    read = "place => place.picture.traces.filter(trace => trace.showlegend).map(trace => trace.name)"
     return list(drawn(page, picture).evaluate(read))
 
 
@@ -265,7 +265,7 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
 def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
     picture = drawn(page, "Full spectra")
-    names = picture.evaluate("place => place.layout.annotations.map(({ text }) => text)")
+    names = picture.evaluate("place => place.picture.layout.annotations.map(({ text }) => text)")
     own = [named.point(number).spectrum(node=49, time=(0.1, 0.5), window="hann", range_hz=100) for number in (1, 2)]
     lines = [
         f"{number}: {'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
@@ -274,7 +274,7 @@ def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Open
     ]
     assert names
     assert set(names) <= set(lines)
-    shades = picture.evaluate("place => place.layout.shapes.map(({ x0 }) => x0)")
+    shades = picture.evaluate("place => place.picture.layout.shapes.map(({ x0 }) => x0)")
     resolved = min(table.attributes["resolved_hz"] for table in own)
     assert shades[:1] == pytest.approx([resolved] if resolved < 100 else [])
     assert len(page.locator("figcaption", has_text="Shaded:").all()) == (resolved < 100)
@@ -284,7 +284,7 @@ def test_energy_is_compared_over_time(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=energy")
     picture = drawn(page, "^Energy$")
     page.get_by_label("Shows", exact=True).select_option("kinetic")
-    read = "place => place.data.map(({ x, y }) => ({ x: [...x], y: [...y] }))"
+    read = "place => place.picture.traces.map(({ x, y }) => ({ x: [...x], y: [...y] }))"
     table = named.point(2).energy()
     until(page, lambda: len(picture.evaluate(read)[0]["x"]) == len(table["time"]))
     np.testing.assert_allclose(picture.evaluate(read)[1]["x"], table["time"], rtol=1e-6)
@@ -338,7 +338,7 @@ def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, na
     axes = {"well.hole_diameter": [0.2159, 0.26]}
     holes = client.submit("paper-200m", set=SHORT, axes=axes, name="two holes").wait(timeout=120.0)
     page = opened(f"#/compare?points={key(holes)},{key(holes, 2)}&view=orbit&depth=57.73&zoom=hole")
-    circles = "place => place.data.filter(({ hoverinfo }) => hoverinfo === 'skip').map(({ x, xaxis }) => [x[0], xaxis])"
+    circles = "({ picture }) => picture.traces.filter(({ isSilent }) => isSilent).map(({ x, xaxis }) => [x[0], xaxis])"
     picture = drawn(page, "Orbits")
     statics = [point.statics() for point in (holes.point(1), holes.point(2))]
     clearances = [float(table["clearance"][list(table["node"]).index(49)]) for table in statics]
@@ -346,8 +346,8 @@ def test_compared_orbits_have_the_hole_of_each(opened: Opens, client: Client, na
     assert [radius for radius, _ in shown] == pytest.approx([1e3 * clearance for clearance in clearances])
     assert [panel for _, panel in shown] == ["x", "x2"]
     # On one scale.
-    scale = "place => ['xaxis', 'xaxis2', 'yaxis', 'yaxis2'].map((name) => place._fullLayout[name])"
-    scale += ".map(({ _length, range }) => _length / (range[1] - range[0]))"
+    scale = "place => ['xaxis', 'xaxis2', 'yaxis', 'yaxis2'].map((name) => place.picture.axis(name))"
+    scale += ".map(({ length, range }) => length / (range[1] - range[0]))"
     assert picture.evaluate(scale) == pytest.approx(4 * [picture.evaluate(scale)[0]], rel=1e-6)
     caption = page.locator("figcaption")
     for number, clearance in enumerate(clearances, 1):
@@ -368,12 +368,14 @@ def test_points_over_time_have_a_panel_each_on_one_scale(opened: Opens, named: S
     ]:
         page = opened(f"#/compare?points={points}&view={view}")
         shown = drawn(page, picture)
-        read = "place => place.data.map(({ yaxis }) => yaxis)"
+        read = "place => place.picture.traces.map(({ yaxis }) => yaxis)"
         assert shown.evaluate(read) == ["y", *(f"y{number}" for number in range(2, count + 1))]
-        spans = "place => [1, 2, 3].map((number) => place._fullLayout[`yaxis${number > 1 ? number : ''}`].range)"
+        spans = "place => [1, 2, 3].map((number) => place.picture.axis(`yaxis${number > 1 ? number : ''}`).range)"
         first, *others = shown.evaluate(spans)
         assert others == [pytest.approx(first), pytest.approx(first)]
-        headings = shown.evaluate("place => place.layout.annotations.map(({ text }) => text.split(': ')[0].at(-1))")
+        headings = shown.evaluate(
+            "place => place.picture.layout.annotations.map(({ text }) => text.split(': ')[0].at(-1))"
+        )
         assert headings == (["1", "2", "3"] * 2)[:count]
 
 
@@ -381,7 +383,7 @@ def test_compared_orbits_are_below_each_other_on_a_phone(opened: Opens, named: S
     points = ",".join(key(named, ordinal) for ordinal in (1, 2, 3))
     page = opened(f"#/compare?points={points}&view=orbit", viewport={"width": 390, "height": 844})
     picture = drawn(page, "Orbits")
-    widths = picture.evaluate("place => ['xaxis', 'xaxis2', 'xaxis3'].map((name) => place._fullLayout[name]._length)")
+    widths = picture.evaluate("place => ['xaxis', 'xaxis2', 'xaxis3'].map((name) => place.picture.axis(name).length)")
     assert min(widths) > 150
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
@@ -399,7 +401,7 @@ def test_compared_wells_say_how_far_from_the_axis_strings_are_drawn(opened: Open
 
 def test_a_window_dragged_across_histories_is_that_of_the_other_views(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=history&from=0&to=0.5")
-    picture = drawn(page, "Histories").locator(".nsewdrag").first
+    picture = drawn(page, "Histories").locator(".area").first
     picture.scroll_into_view_if_needed()
     drag(page, picture, (0.4, 0.5), (0.8, 0.5))
     start, end = page.get_by_label("From [s]"), page.get_by_label("To [s]")
@@ -418,7 +420,7 @@ def test_snapshots_are_compared_side_by_side(
 ) -> None:
     points = f"{key(elsewhere)},{key(named)}"
     page = opened(f"#/compare?points={points}&view=contacts")
-    shown = drawn(page, "Contact force over depth and time, point 1").evaluate("place => place.data[0].z")
+    shown = drawn(page, "Contact force over depth and time, point 1").evaluate("place => place.picture.traces[0].z")
     snapshots = elsewhere.point(1).snapshots(fields=["normal_force"])
     force = snapshots["normal_force"].reshape(-1, snapshots.attributes["nodes"])
     np.testing.assert_allclose(np.array(shown), force.T / 1e3, rtol=1e-6)
@@ -432,7 +434,7 @@ def test_snapshots_are_compared_side_by_side(
     assert troubles == []
     page.get_by_role("link", name="Rotation at bit and top").click()
     picture = drawn(page, "Rotation at bit and top")
-    speeds = "place => place.data.filter(({ showlegend }) => showlegend).map(({ y }) => [...y])"
+    speeds = "place => place.picture.traces.filter(({ showlegend }) => showlegend).map(({ y }) => [...y])"
     # The histories of all have the bit, at the same rate.
     caption = page.locator("figcaption")
     expect(caption).to_contain_text("From the recorded histories.")
@@ -444,14 +446,16 @@ def test_snapshots_are_compared_side_by_side(
     expect(missing).to_contain_text("Point 2 is missing: Rotation speed and torque at the top")
     expect(caption).to_contain_text("From the snapshots.")
     top = elsewhere.point(1).snapshots(node=1, time=(0.1, 0.5))
-    torque = picture.evaluate("place => [...place.data.find(({ yaxis }) => yaxis === 'y2').y]")
+    torque = picture.evaluate("place => [...place.picture.traces.find(({ yaxis }) => yaxis === 'y2').y]")
     np.testing.assert_allclose(torque, top["torque"] / 1e3, rtol=1e-6)
 
 
 def test_spectrograms_are_compared_on_one_scale(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrogram&depth=57.73&range=50")
     scales = [
-        drawn(page, f"Spectrogram, point {number}").evaluate("place => [place.data[0].zmin, place.data[0].zmax]")
+        drawn(page, f"Spectrogram, point {number}").evaluate(
+            "place => [place.picture.traces[0].zmin, place.picture.traces[0].zmax]"
+        )
         for number in (1, 2)
     ]
     assert scales[0] == scales[1]
@@ -469,7 +473,7 @@ def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: S
     page = opened(f"#/compare?points={points}&view=profiles&profiles=effective_tension,normal_force")
     picture = drawn(page, "Profiles")
     depths = named.point(1).statics()["measured_depth"]
-    line = "place => (place.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
+    line = "place => (place.picture.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
     cursor = page.get_by_role("slider", name="Depth cursor")
     cursor.focus()
     for _ in range(3):
@@ -624,7 +628,7 @@ def test_the_lines_of_a_comparison_follow_what_is_chosen(opened: Opens, named: S
 def test_the_whole_hole_is_shown_where_it_is_chosen(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)}&view=orbit&zoom.orbit=x:0.001:0.002,y:0.001:0.002")
     picture = drawn(page, "Orbits")
-    width = "place => place._fullLayout.xaxis.range[1] - place._fullLayout.xaxis.range[0]"
+    width = "place => place.picture.axis('xaxis').range[1] - place.picture.axis('xaxis').range[0]"
     assert picture.evaluate(width) < 10.0
     page.get_by_label("Shows", exact=True).select_option("hole")
     statics = named.point(1).statics()

@@ -87,7 +87,9 @@ def test_a_class_is_a_word_of_the_table_and_of_the_map(opened: Opens, sweep: Swe
     page.goto("about:blank")
     page.goto(f"{client.server}/#/sweeps/{sweep.id}?view=map&colour=class")
     picture = drawn(page, "class over")
-    read = "place => [place.data[0].colorbar.ticktext, place.data[0].colorscale.map(([, colour]) => colour)]"
+    read = (
+        "({ picture: { traces: [{ colorbar, colorscale }] } }) => [colorbar.ticktext, colorscale.map(([, ink]) => ink)]"
+    )
     names, scale = picture.evaluate(read)
     assert sorted(names) == sorted(set(words))
     rgb = {f"rgb({int(one[1:3], 16)}, {int(one[3:5], 16)}, {int(one[5:7], 16)})" for one in scale}
@@ -107,7 +109,7 @@ def test_limits_that_are_moved_judge_the_points_anew(opened: Opens, sweep: Sweep
         if uncertain:
             expect(page.get_by_text(re.compile(f"^{len(uncertain)} uncertain point"))).to_be_visible()
         words = {str(name).replace("_", " ") for name in window["class"]}
-        until(page, lambda: set(picture.evaluate("place => place.data[0].colorbar.ticktext")) == words)
+        until(page, lambda: set(picture.evaluate("place => place.picture.traces[0].colorbar.ticktext")) == words)
 
     shows({})
     name = "largest equivalent stress of all elements"

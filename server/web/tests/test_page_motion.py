@@ -105,7 +105,7 @@ def test_contacts_rotation_and_torque_are_those_of_the_service(opened: Opens, re
     np.testing.assert_allclose(speed, 120.0 * np.pi / 30, rtol=1e-6)
 
 
-NAMES = "place => place.data.map(({ name }) => name)"
+NAMES = "place => place.picture.traces.map(({ name }) => name)"
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -192,7 +192,7 @@ def test_a_map_of_contacts_is_saved_as_a_picture(opened: Opens, recorded: Sweep)
     saved = {}
     for format in ("PNG", "SVG"):
         with page.expect_download() as download:
-            picture.locator(f"[data-title='Save as {format}']").click()
+            picture.get_by_role("button", name=f"Save as {format}").click()
         assert download.value.suggested_filename.endswith(f".{format.lower()}")
         saved[format] = download.value.path().read_bytes()
     assert saved["PNG"].startswith(b"\x89PNG\r\n")

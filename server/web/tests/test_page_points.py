@@ -16,6 +16,7 @@ from browsing import (
     MINUS,
     Opens,
     clock,
+    drag,
     drawn,
     pixels,
     run_curl,
@@ -26,6 +27,7 @@ from browsing import (
     taken,
     trace,
     until,
+    written,
 )
 from drillsweep import Client, DrillsweepWarning, Sweep
 from service import SHORT, Service, make_token
@@ -213,9 +215,8 @@ def test_statistics_carry_the_bias_where_the_window_is_the_usual_one(opened: Ope
 def test_profiles_do_not_lie_over_each_other_on_a_phone(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles", viewport={"width": 390, "height": 844})
     picture = drawn(page, "Profiles over measured depth")
-    read = "place => [...place.querySelectorAll('.xtitle, .x2title, .x3title, .x4title, .x5title, .x6title')]"
-    read += ".map((title) => { const { left, right } = title.getBoundingClientRect(); return [left, right]; })"
-    ends = sorted(picture.evaluate(read))
+    names = ("friction", "damping", "eccentricity", "effective", "torque", "largest")
+    ends = sorted((word["left"], word["right"]) for word in written(picture) if word["text"].startswith(names))
     assert len(ends) == 6
     for (_, right), (left, _) in pairwise(ends):
         assert right < left
@@ -226,10 +227,10 @@ def test_profiles_do_not_lie_over_each_other_on_a_phone(opened: Opens, sweep: Sw
 def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles&profiles=effective_tension,normal_force")
     picture = drawn(page, "Profiles over measured depth")
-    picture.locator(".nsewdrag").first.scroll_into_view_if_needed()
-    box = picture.locator(".nsewdrag").first.bounding_box()
+    picture.locator(".area").first.scroll_into_view_if_needed()
+    box = picture.locator(".area").first.bounding_box()
     assert box is not None
-    labels = picture.locator(".hoverlayer .hovertext")
+    labels = picture.locator(".told")
     reading = page.get_by_role("status").filter(has_text=re.compile("^(At|Point at) "))
 
     def agrees() -> bool:
@@ -255,7 +256,7 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
     depths = statics["measured_depth"]
     cursor = page.get_by_role("slider", name="Depth cursor")
     reading = page.get_by_role("status").filter(has_text=re.compile("^(At|Point at) "))
-    line = "place => (place.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
+    line = "place => (place.picture.layout.shapes ?? []).map(({ y0, y1 }) => [y0, y1])"
 
     def stands_at(node: int) -> None:
         depth, force = float(depths[node]), float(statics["normal_force"][node]) / 1e3
@@ -284,7 +285,7 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
     in_feet = float(depths[30]) / 0.3048
     until(other, lambda: copy.evaluate(line) == [pytest.approx([in_feet, in_feet], rel=1e-6)])
     # The mouse takes it along, and has a line of its own.
-    box = picture.locator(".nsewdrag").first.bounding_box()
+    box = picture.locator(".area").first.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"], steps=3)
     until(page, lambda: picture.evaluate(line) == [])
@@ -304,17 +305,14 @@ def test_names_of_bars_of_energy_have_their_numbers_and_room(opened: Opens, swee
     page.route("**/energy?**", lost)
     page.goto(page.url.replace("#/nowhere", f"#/sweeps/{sweep.id}/points/1?view=energy"))
     picture = drawn(page, "Energy by account")
-    read = """place => [...place.querySelectorAll('.ytick text')].map((name) => {
-        const { left, right, top, bottom } = name.getBoundingClientRect();
-        return { text: name.textContent, left, right, top, bottom };
-    })"""
-    names = picture.evaluate(read)
+    names = [word for word in written(picture) if re.search(r" .?J$", word["text"])]
     assert len(names) > 5
     for one, other in combinations(names, 2):
         assert one["bottom"] <= other["top"] + 1 or other["bottom"] <= one["top"] + 1, (one, other)
     # Each name is followed by its energy, all of which is seen.
-    left = picture.evaluate("place => place.getBoundingClientRect().left")
-    assert all(re.search(r", [\d.\s]+ .?J$", name["text"]) and name["left"] >= left for name in names), names
+    assert all(re.search(r", [\d.\s]+ .?J$", name["text"]) and name["left"] >= 0 for name in names), names
+    areas = picture.evaluate("place => place.querySelector('.area').offsetLeft")
+    assert all(name["right"] <= areas for name in names), names
 
 
 def test_snapshots_are_downloaded_as_csv(opened: Opens, recorded: Sweep) -> None:
@@ -330,8 +328,10 @@ def test_rotation_of_a_node_says_of_which(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
     picture = drawn(page, "Rotation speed and torque of node 49 at 57.73 m")
     expect(page.get_by_role("heading", name="Rotation speed and torque of node 49 at 57.73 m")).to_be_visible()
-    ticks = picture.locator(".y2tick text").all_text_contents()
-    values = [float(text.replace(MINUS, "-")) for text in ticks]
+    right = picture.evaluate("({ picture }) => picture.frame.right")
+    ticks = [word["text"] for word in written(picture) if word["left"] > right]
+    values = sorted(float(text.replace(MINUS, "-")) for text in ticks if re.match(rf"[{MINUS}\d]", text))
+    assert len(values) >= 2
     steps = {round(after - before, 9) for before, after in pairwise(values)}
     assert len(steps) == 1
     assert all(value / step == pytest.approx(round(value / step), abs=1e-6) for value in values for step in steps)
@@ -419,11 +419,71 @@ def test_the_wall_is_named_where_it_is_seen_and_the_axes_by_the_low_side(opened:
     expect(page.get_by_text(expected)).to_be_visible()
 
 
+def test_a_legend_hides_lines_and_shows_one_alone(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy")
+    picture = drawn(page, "Energy over time")
+    names = picture.locator(".legend").get_by_role("button")
+    shown = (
+        "names => names.filter((name) => name.getAttribute('aria-pressed') === 'true').map((name) => name.textContent)"
+    )
+    everything = names.evaluate_all(shown)
+    assert len(everything) > 3
+    canvas = picture.locator("canvas.picture")
+    whole = pixels(canvas)
+    first = names.first
+    first.focus()
+    page.keyboard.press("Enter")
+    assert names.evaluate_all(shown) == everything[1:]
+    until(page, lambda: pixels(canvas) != whole)
+    expect(first).to_be_focused()
+    page.keyboard.press("Enter")
+    until(page, lambda: pixels(canvas) == whole)
+    page.keyboard.press("Shift+Enter")
+    assert names.evaluate_all(shown) == everything[:1]
+    first.dblclick()
+    assert names.evaluate_all(shown) == everything
+    names.nth(2).dblclick()
+    assert names.evaluate_all(shown) == everything[2:3]
+
+
+def test_a_picture_is_moved_and_zoomed_by_its_buttons(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy")
+    picture = drawn(page, "Energy over time")
+    picture.hover()
+    read = "({ picture }) => picture.axis('xaxis').range"
+    whole = picture.evaluate(read)
+    bar = picture.get_by_role("toolbar", name="Picture")
+    move = bar.get_by_role("button", name="Move by dragging")
+    # One stop of the Tab key leads to all buttons.
+    bar.get_by_role("button", name="Zoom by dragging").focus()
+    page.keyboard.press("ArrowRight")
+    expect(move).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(move).to_have_attribute("aria-pressed", "true")
+    drag(page, picture.locator(".area"), (0.6, 0.5), (0.4, 0.5))
+    width = whole[1] - whole[0]
+    moved = pytest.approx([end + 0.2 * width for end in whole], abs=0.01 * width)
+    until(page, lambda: picture.evaluate(read) == moved)
+    until(page, lambda: "zoom.curves=" in page.url)
+    bar.get_by_role("button", name="Reset axes").click()
+    until(page, lambda: picture.evaluate(read) == whole and "zoom" not in page.url)
+    bar.get_by_role("button", name="Zoom in").click()
+    half = pytest.approx([whole[0] + width / 4, whole[1] - width / 4])
+    until(page, lambda: picture.evaluate(read) == half)
+    bar.get_by_role("button", name="Zoom out").click()
+    until(page, lambda: picture.evaluate(read) == pytest.approx(whole))
+    # The numbers of an axis are dragged, too.
+    drag(page, picture.locator(".strip[data-axis=x]"), (0.6, 0.5), (0.4, 0.5))
+    until(page, lambda: picture.evaluate(read) == moved)
+    picture.locator(".strip[data-axis=x]").dblclick()
+    until(page, lambda: picture.evaluate(read) == whole)
+
+
 def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=energy")
     picture = drawn(page, "Energy by account")
-    names = picture.evaluate("place => place._fullLayout.yaxis.categoryarray")
-    assert picture.evaluate("place => place._fullLayout.xaxis.type") == "log"
+    names = picture.evaluate("place => place.picture.axis('yaxis').words")
+    assert picture.evaluate("place => place.picture.axis('xaxis').isLog")
     table = sweep.point(1).energy().to_pandas()
     sizes = (table.iloc[-1] - table.iloc[0]).abs().drop(["time", "residual", "contact_work"], errors="ignore")
     sizes = sizes.sort_values(ascending=False)
@@ -436,7 +496,7 @@ def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: S
         (name, end)
         for number in range(3)
         for name, end in picture.evaluate(
-            "(place, number) => place.data[number].y.map((name, at) => [name, place.data[number].x[at]])"
+            "({ picture: { traces } }, number) => traces[number].y.map((name, at) => [name, traces[number].x[at]])"
             ".filter((_, at) => at % 3 === 1)",
             number,
         )
@@ -447,7 +507,7 @@ def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: S
 
 def test_a_full_spectrum_goes_as_far_as_is_chosen(opened: Opens, sweep: Sweep) -> None:
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=motion&node=49")
-    last = "place => Math.max(...place.data[0].x)"
+    last = "place => Math.max(...place.picture.traces[0].x)"
     picture = drawn(page, "Full spectrum of node 49")
     assert 15.0 < picture.evaluate(last) <= 20.0
     with page.expect_request(re.compile(r"/modes\?to_hz=50$")):
@@ -581,7 +641,7 @@ def test_without_snapshots_rotation_is_drawn_from_the_history_of_the_bit(
     assert_lines_run(page, expected, tmp_path / "curl")
     # Those of the bit are recorded whichever nodes are.
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=string")
-    assert len(drawn(page, "Rotation speed and torque at bit and top").evaluate("plot => plot.data")) == 2
+    assert len(drawn(page, "Rotation speed and torque at bit and top").evaluate("place => place.picture.traces")) == 2
     expect(page.get_by_text("The top was not recorded.")).to_be_visible()
     page = opened(f"#/sweeps/{untwisted.id}/points/1?view=string")
     expect(page.get_by_text("are not in this result: torsion was not solved for")).to_be_visible()
@@ -596,12 +656,12 @@ def test_an_answer_of_another_node_that_comes_late_is_not_shown(opened: Opens, s
     until(page, lambda: len(held) == 1)
     page.get_by_label("Node", exact=True).select_option("10")
     picture = drawn(page, "Rotation speed and torque of node 10")
-    shown = picture.evaluate("place => [...place.data[0].y]")
+    shown = picture.evaluate("place => [...place.picture.traces[0].y]")
     with page.expect_response("**/history?*node=49&*"):
         held[0].continue_()
     taken(page)
     expect(page.get_by_role("heading", name="Rotation speed and torque of node")).to_contain_text("node 10 ")
-    assert picture.evaluate("place => [...place.data[0].y]") == shown
+    assert picture.evaluate("place => [...place.picture.traces[0].y]") == shown
 
 
 def test_a_node_that_cannot_be_shown_leaves_the_others(opened: Opens, sweep: Sweep, troubles: list[str]) -> None:

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { classes } from "../../data/judgement.js";
 import { loadQuantities } from "../../data/units.js";
-import { classColour } from "../../draw/colours.js";
+import { classColour } from "../../draw/picture/colours.js";
 import { preferred } from "../../sweep/part.js";
 import { sortable, wordColour, wordsOf } from "../../sweep/categories.js";
 

@@ -6,7 +6,7 @@ import { beforeEach, test } from "node:test";
 import { causeOf, causeWords, classes, headlineNumbers, rankOf } from "../../data/judgement.js";
 import { choose } from "../../data/settings.js";
 import { loadQuantities } from "../../data/units.js";
-import { BLACK, classColour, inkOnClass, WHITE } from "../../draw/colours.js";
+import { BLACK, classColour, inkOnClass, WHITE } from "../../draw/picture/colours.js";
 import { QUANTITIES } from "./browser.js";
 
 const G = 9.80665;

@@ -8,7 +8,15 @@ import { fileURLToPath } from "node:url";
 
 const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../..");
 /** Folders from the bottom up: a module imports modules of its own level or below, and views next to each other import nothing of each other. */
-const LEVELS = [["data"], ["ui"], ["draw"], ["list", "sweep", "point", "submit"], ["compare"], ["."]];
+const LEVELS = [
+  ["data"],
+  ["ui"],
+  ["draw/picture"],
+  ["draw"],
+  ["list", "sweep", "point", "submit"],
+  ["compare"],
+  ["."],
+];
 const FOREIGN = ["node_modules", "tests", "vendor"];
 
 /** @returns {string[]} paths of all modules from the page's folder */

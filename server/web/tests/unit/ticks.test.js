@@ -1,10 +1,10 @@
-// Ticks of logarithmic scales.
+// Ticks of linear and logarithmic scales, and their words.
 
 import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
-import { exponentsOf, logTicks } from "../../draw/plots.js";
+import { logAxisTicks, logTicks, roundValues, tickText } from "../../draw/picture/ticks.js";
 
 const RANGES = [
   [2.27, 2.51],
@@ -37,13 +37,26 @@ test("a range of one value has that value", () => {
   assert.deepEqual(logTicks(Math.log10(3), Math.log10(3)), { tickvals: [Math.log10(3)], ticktext: ["3"] });
 });
 
-test("axes are written in full, but for logarithmic ones and tiny values", () => {
-  const traces = [
-    { x: [-8000, 0], y: [1e-5, null] },
-    { x: [3], y: [2], yaxis: "y2" },
-  ];
-  assert.equal(exponentsOf("xaxis", {}, traces), "none");
-  assert.equal(exponentsOf("xaxis", { type: "log" }, traces), "power");
-  assert.equal(exponentsOf("yaxis", {}, traces), "power");
-  assert.equal(exponentsOf("yaxis2", {}, traces), "none");
+test("numbers are written in full, but for tiny and huge ones", () => {
+  assert.deepEqual([0, 0.001, -8000, 12345.678, 2e-5, -1e-12, 1e9].map(tickText), [
+    "0",
+    "0.001",
+    "−8000",
+    "12\u202f345.7",
+    "2×10⁻⁵",
+    "−10⁻¹²",
+    "10⁹",
+  ]);
+});
+
+test("round values lie between both ends, which count", () => {
+  assert.deepEqual(roundValues(0, 1, 5), [0, 0.2, 0.4, 0.6000000000000001, 0.8, 1]);
+  assert.deepEqual(roundValues(-3, 3, 4), [-2, 0, 2]);
+});
+
+test("a logarithmic axis is written by powers of ten where some numbers are tiny or large", () => {
+  const words = (low, high) => logAxisTicks(low, high).map(({ text }) => text);
+  assert.deepEqual(words(0.01, 10), ["0.01", "0.1", "1", "10"]);
+  assert.deepEqual(words(1e-5, 1e-1), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"]);
+  assert.deepEqual(words(1250, 1750), ["1300", "1400", "1500", "1600", "1700"]);
 });

@@ -56,8 +56,8 @@ def test_curves_of_profiles_keep_away_from_the_frame(opened: Opens, named: Sweep
     page = opened(f"#/sweeps/{named.id}/points/1?profiles=effective_tension,torque")
     picture = drawn(page, "Profiles")
     read = """place => [["x", "xaxis", 0], ["y", "yaxis", 0], ["x", "xaxis2", 1]].map(([letter, axis, number]) => {
-        const values = [...place.data[number][letter]].filter((value) => value !== null);
-        const ends = [...place._fullLayout[axis].range].sort((a, b) => a - b);
+        const values = [...place.picture.traces[number][letter]].filter((value) => value !== null);
+        const ends = [...place.picture.axis(axis).range].sort((a, b) => a - b);
         const [least, largest] = [Math.min(...values), Math.max(...values)];
         return [least - ends[0], ends[1] - largest].map((room) => room / (largest - least));
     })"""

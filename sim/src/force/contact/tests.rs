@@ -1669,3 +1669,39 @@ fn a_wall_keeps_its_friction_at_rest_under_another_law() {
     assert_eq!(share.law(), &wall.law().with_friction_share(0.25));
     assert_ne!(share.law(), wall.law());
 }
+
+/// Nodal values of a bent element of a helix at `radius` \[m\], of which both ends are `angle` \[rad\] from its middle.
+fn helical(radius: f64, angle: f64) -> ElementVector {
+    let (sin, cos) = angle.sin_cos();
+    let mut values = rigid(radius * cos, radius * cos);
+    (values[V], values[DOFS + V]) = (-radius * sin, radius * sin);
+    // The parabola through both ends goes through the middle at the radius.
+    let turn = 4.0 * radius * (1.0 - cos) / SEGMENT.length;
+    (values[THETA_Y], values[DOFS + THETA_Y]) = (turn, -turn);
+    let lean = -2.0 * radius * sin / SEGMENT.length;
+    (values[THETA_X], values[DOFS + THETA_X]) = (lean, lean);
+    values
+}
+
+/// Elements on a helix have their ends and their middle in the wall, and so the whole parabola through these gaps, but not all of the parabolas of u and v.
+#[test]
+fn loads_on_an_element_that_only_slides_with_the_rotation_are_those_at_rest() {
+    let law = parameters(&BASE).with_friction_at_rest(StartFriction::Sliding);
+    let helices = [1e-3, 1e-4, 1e-5, 1e-6].map(|gap| helical(SEGMENT.wall.clearance + gap, 0.5));
+    for values in elements_in_the_wall().into_iter().chain(helices) {
+        let resting = static_segment(&law, &SEGMENT, &values, 2.0).unwrap();
+        let mut moving = SegmentForce::none();
+        let motion = motion_of(&values, &ElementVector::zeros());
+        assert!(dynamic_segment(&law, &SEGMENT, &motion, 2.0, &mut moving));
+        for (found, expected) in moving.ends.into_iter().zip(resting.ends) {
+            assert_close(found, expected, 1e-12);
+        }
+        let [in_u, in_v] = planes(&resting.force);
+        let size = resting.force.norm();
+        for (found, expected) in
+            [moving.load(0), moving.load(1)].as_flattened().iter().zip([in_u, in_v].as_flattened())
+        {
+            assert!((found - expected).abs() < 1e-12 * size, "{moving:?} instead of {resting:?}");
+        }
+    }
+}

@@ -200,6 +200,28 @@ fn flow_rates_at_which_the_regimes_change() {
 }
 
 /// The paper's claim on C_f: it falls with flow rate and with density.
+/// Dodge and Metzner (1959): 3470 - 1370 N and 4270 - 1370 N; N is the index of a mud without yield stress.
+#[test]
+fn bore_changes_its_regime_at_the_published_reynolds_numbers() {
+    for (flow_index, limits) in [(1.0, [2100.0, 2900.0]), (0.5, [2785.0, 3585.0])] {
+        let at =
+            |flow_rate: f64| flow(&Mud { yield_stress: 0.0, flow_index, flow_rate, ..MUD }, &DRILLPIPE, 0.0);
+        for (limit, before) in limits.into_iter().zip([Regime::Laminar, Regime::Transitional]) {
+            let (mut below, mut above) = (1e-6, 1.0);
+            for _ in 0..60 {
+                let middle = 0.5 * (below + above);
+                let is_before = match at(middle).bore_regime {
+                    Regime::Laminar => true,
+                    regime => regime == before,
+                };
+                if is_before { below = middle } else { above = middle }
+            }
+            assert_eq!(at(below).bore_regime, before);
+            assert!((at(below).bore_reynolds_number / limit - 1.0).abs() < 1e-9, "{flow_index}: {limit}");
+        }
+    }
+}
+
 #[test]
 fn friction_coefficient_falls_strictly_with_flow_rate_and_density() {
     for geometry in &SECTIONS {
@@ -602,6 +624,11 @@ fn still_mud_has_no_friction_but_resists_rotation() {
 
     let resting = element_flow(&still, &DRILLPIPE, 0.7, 0.0).expect("mud at rest");
     assert_eq!((resting.apparent_viscosity, resting.rotation_damping), (0.0, 0.0));
+    // So do muds with a yield stress alone, and without one but thinned by shear.
+    for mud in [Mud { flow_index: 1.0, ..still }, Mud { yield_stress: 0.0, ..still }] {
+        let resting = element_flow(&mud, &DRILLPIPE, 0.7, 0.0).expect("mud at rest");
+        assert_eq!(resting.apparent_viscosity, 0.0);
+    }
     let water = Mud { yield_stress: 0.0, flow_index: 1.0, consistency: 1e-3, ..still };
     let resting = element_flow(&water, &DRILLPIPE, 0.7, 0.0).expect("water at rest");
     assert!((resting.apparent_viscosity / (1e-3 / 1200.0) - 1.0).abs() < 1e-14);

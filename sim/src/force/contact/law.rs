@@ -229,7 +229,7 @@ impl<L: Lane> ContactParameters<L> {
 
     /// [Coefficient](Self::friction_coefficient) and [slope](Self::friction_slope) of friction at a sliding speed \[m/s\], by one division.
     #[inline(always)]
-    fn friction_with_slope(&self, sliding_speed: L) -> (L, L) {
+    pub(super) fn friction_with_slope(&self, sliding_speed: L) -> (L, L) {
         let one = L::splat(1.0);
         let run = self.decay * sliding_speed.abs();
         let fade = one / (run + one);

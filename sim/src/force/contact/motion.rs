@@ -223,7 +223,7 @@ fn is_outside<L: Lane>(node: &ContactNode<L>, motion: &LateralMotion<L>) -> L::M
 /// Motion of the string's surface along and into the wall.
 #[derive(Debug, Clone, Copy)]
 pub struct Surface<L: Lane> {
-    /// Lanes in the wall; the other values are valid in these only.
+    /// Lanes in the wall; the other values are valid off the axis.
     pub touches: L::Mask,
     /// Unit vector (u, v) from the axis.
     pub normal: [L; 2],
@@ -240,10 +240,11 @@ impl<L: Lane> Surface<L> {
     #[inline(always)]
     pub fn of(node: &ContactNode<L>, motion: &LateralMotion<L>, rotation_speed: L) -> Self {
         let LateralMotion { u, v, u_rate, v_rate, theta_z_rate } = *motion;
-        let outside = is_outside(node, motion);
-        let radius = L::select(outside, u.mul_add(u, v * v), L::splat(1.0)).sqrt();
+        let (zero, squared) = (L::splat(0.0), u.mul_add(u, v * v));
+        // Short of the wall too: an element in the wall carries its force at points of a parabola that stray from it by a little.
+        let radius = L::select(squared.greater_than(zero), squared, L::splat(1.0)).sqrt();
         let penetration = radius - node.clearance;
-        let touches = outside & penetration.greater_than(L::splat(0.0));
+        let touches = is_outside(node, motion) & penetration.greater_than(zero);
         let per_radius = L::splat(1.0) / radius;
         let [normal_u, normal_v] = [u * per_radius, v * per_radius];
         let whirl_speed = normal_u.mul_add(v_rate, -(normal_v * u_rate));

@@ -5,7 +5,7 @@ use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction, Wa
 use super::*;
 use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
 use crate::math::linalg::{Four, Lane};
-use crate::string::beam::{ElementVector, Shape};
+use crate::string::beam::{ElementMatrix, ElementVector, Shape};
 
 /// The law of the paper's 200 m base case (Table 5).
 const BASE: ContactLaw = ContactLaw {
@@ -777,6 +777,7 @@ fn loads_are_derivatives_of_the_energy_of_any_part_in_the_wall() {
             let law = parameters(&ContactLaw { stiffness_sharpness: sharpness, ..FRICTIONLESS });
             let energy = |values: &ElementVector| SEGMENT.potential_energy(&law, &planes(values));
             let Some(contact) = static_segment(&law, &SEGMENT, &values, 1.0) else { continue };
+            assert!(SEGMENT.may_touch(&planes(&values)));
             let [upper, _, lower] = [0.0, 0.5, 1.0].map(|at| {
                 let shape = SEGMENT.place(at).shape;
                 shape.iter().zip(planes(&values)[0]).map(|(shape, value)| shape * value).sum::<f64>()
@@ -805,7 +806,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
     let law = parameters(&ContactLaw { stiffness_sharpness: 1e14, ..FRICTIONLESS });
     let stiffness = 1e7 * SEGMENT.wall.stiffness_share / SEGMENT.length;
     let clearance = SEGMENT.wall.clearance;
-    for (upper, lower) in [(1e-4, 3e-4), (-1e-4, 2e-4), (5e-4, -3e-4), (-1e-6, 1e-3)] {
+    for (upper, lower) in [(1e-4, 3e-4), (3e-4, 1e-9), (-1e-4, 2e-4), (5e-4, -3e-4), (-1e-6, 1e-3)] {
         let values = rigid(clearance + upper, clearance + lower);
         let contact = static_segment(&law, &SEGMENT, &values, 1.0).unwrap();
         // The part from the zero of the gap to the end that is in the wall.
@@ -824,6 +825,16 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
         let [at_upper, at_lower] = contact.ends;
         assert_close(at_upper + at_lower, force, 1e-9);
         assert_close(at_lower * SEGMENT.length, moment, 1e-9);
+        let mut moving = SegmentForce::none();
+        assert!(dynamic_segment(
+            &law,
+            &SEGMENT,
+            &motion_of(&values, &ElementVector::zeros()),
+            0.0,
+            &mut moving
+        ));
+        assert_close(moving.middle * SEGMENT.length, moment / force, 1e-9);
+        assert_close(moving.ends[0] + moving.ends[1], force, 1e-9);
         // The loads do the same work on rigid motions.
         let work = |motion: &ElementVector| contact.force.dot(motion);
         assert_close(work(&rigid(1.0, 1.0)), -force, 1e-9);
@@ -836,7 +847,16 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
         let step = 1e-9;
         assert_close((energy(step) - energy(-step)) / (2.0 * step), force, 1e-5);
     }
-    assert!(static_segment(&law, &SEGMENT, &rigid(0.02, 0.0269), 1.0).is_none());
+    // Short of the wall there is none, and the loads of the caller stay.
+    for values in [rigid(0.02, 0.0269), rigid(clearance - 1e-9, clearance - 1e-4)] {
+        assert!(static_segment(&law, &SEGMENT, &values, 1.0).is_none());
+        let before = SegmentForce { ends: [1.0, 2.0], ..SegmentForce::none() };
+        let mut force = before;
+        let motion = motion_of(&values, &ElementVector::zeros());
+        assert!(!dynamic_segment(&law, &SEGMENT, &motion, 0.0, &mut force));
+        assert_eq!(force, before);
+    }
+    assert!(!SEGMENT.may_touch(&planes(&rigid(0.01, 0.01))));
 }
 
 #[test]
@@ -1081,6 +1101,607 @@ fn two_sliding_speeds_that_give_way_solve_their_equations() {
                     assert!(left < 1e-5, "{unopposed:?} {matrix:?}: {left} m/s");
                 }
             }
+        }
+    }
+}
+
+/// Planes of an element turned about the axis of the hole.
+fn turned([in_u, in_v]: [Plane<f64>; 2], angle: f64) -> [Plane<f64>; 2] {
+    let (sin, cos) = angle.sin_cos();
+    let combined = |a: f64, b: f64| std::array::from_fn(|k| a * in_u[k] + b * in_v[k]);
+    [combined(cos, -sin), combined(sin, cos)]
+}
+
+#[test]
+fn loads_on_an_element_turn_with_it_about_the_axis() {
+    let (law, compliance) = (parameters(&BASE), compliance());
+    let mut next = numbers();
+    let mut touched = 0;
+    for _ in 0..300 {
+        let mut values = rigid(0.027 + 3e-4 * next(), 0.027 + 3e-4 * next());
+        for dof in [V, DOFS + V, THETA_X, THETA_Y, DOFS + THETA_X, DOFS + THETA_Y] {
+            values[dof] += 3e-3 * next();
+        }
+        let motion = motion_of(&values, &ElementVector::from_fn(|_, _| 0.1 * next()));
+        let loads = |angle: f64| {
+            let motion = SegmentMotion {
+                planes: turned(motion.planes, angle),
+                rates: turned(motion.rates, angle),
+                ..motion
+            };
+            let mut force = SegmentForce::none();
+            assert_eq!(
+                dynamic_segment(&law, &SEGMENT, &motion, 0.3, &mut force),
+                SEGMENT.potential_energy(&law, &motion.planes) > 0.0
+            );
+            let at_once = force;
+            implicit_segment(&law, &SEGMENT, &motion, 0.3, (&compliance, 1e3), &mut force);
+            [at_once, force].map(|force| (turned([force.load(0), force.load(1)], -angle), force.torque))
+        };
+        let straight = loads(0.0);
+        touched += usize::from(straight[0].1 != [0.0; 2]);
+        for angle in [0.7, 2.0, -1.1] {
+            for ((found, torque), (expected, expected_torque)) in loads(angle).into_iter().zip(straight) {
+                let size = expected.as_flattened().iter().fold(0.0f64, |most, load| most.max(load.abs()));
+                let pairs = found.as_flattened().iter().zip(expected.as_flattened());
+                let torques = torque.iter().zip(&expected_torque);
+                assert!(
+                    pairs.chain(torques).all(|(found, expected)| (found - expected).abs() <= 1e-7 * size),
+                    "{angle}: {found:?} {torque:?} instead of {expected:?} {expected_torque:?}"
+                );
+            }
+        }
+    }
+    assert!(touched > 100, "{touched}");
+}
+
+/// Straight, bulging and hollow elements: in the wall with their whole length, one end, the middle and both ends.
+fn elements_in_the_wall() -> [ElementVector; 6] {
+    let clearance = SEGMENT.wall.clearance;
+    let bent = |gap: f64, turn: f64| {
+        let mut values = rigid(clearance + gap, clearance + 1.3 * gap);
+        values[THETA_Y] += turn;
+        values[DOFS + THETA_Y] -= turn;
+        values
+    };
+    [
+        rigid(clearance + 3e-4, clearance + 3e-4),
+        rigid(clearance + 3e-4, clearance + 1e-4),
+        rigid(clearance + 3e-4, clearance - 2e-4),
+        rigid(clearance - 1e-4, clearance + 4e-4),
+        bent(-1e-4, 4e-3),
+        bent(1e-4, -4e-3),
+    ]
+}
+
+/// Normal force on an element in the wall whose both planes move by `by` along u, at the rate `rate` \[N\].
+fn pushed(law: &ContactParameters<f64>, values: &ElementVector, by: f64, rate: f64) -> f64 {
+    let mut force = SegmentForce::none();
+    let motion = motion_of(&(values + rigid(by, by)), &rigid(rate, rate));
+    assert!(dynamic_segment(law, &SEGMENT, &motion, 0.0, &mut force));
+    force.ends[0] + force.ends[1]
+}
+
+#[test]
+fn the_damper_of_an_element_acts_over_its_part_in_the_wall() {
+    let sharp = ContactLaw { stiffness_sharpness: 1e14, damping_sharpness: 1e14, ..FRICTIONLESS };
+    let law = parameters(&sharp);
+    let (cells, rate) = (20_000, 0.02);
+    for values in elements_in_the_wall() {
+        let in_the_wall = (0..cells).filter(|&cell| {
+            let shape = SEGMENT.place((f64::from(cell) + 0.5) / f64::from(cells)).shape;
+            dot(&shape, &planes(&values)[0]) > SEGMENT.wall.clearance
+        });
+        let part = in_the_wall.count() as f64 / f64::from(cells);
+        let damping = sharp.damping * SEGMENT.wall.damping_share * part;
+        // Each end of a part is known to half a cell.
+        assert_close(
+            pushed(&law, &values, 0.0, rate) - pushed(&law, &values, 0.0, 0.0),
+            damping * rate,
+            5e-4,
+        );
+        let tangent = sliding_segment(&law, &SEGMENT, &values, 12.0).unwrap();
+        let shift = rigid(1.0, 1.0);
+        assert_close(shift.dot(&(tangent.damping * shift)), damping, 5e-4);
+    }
+}
+
+/// Compliance of an element that moves sideways and twists as a whole.
+fn compliance_of_a_whole(lateral: f64, twist: f64) -> SegmentCompliance<f64> {
+    SegmentCompliance {
+        lateral: [lateral, 0.0, lateral, 0.0, 0.0, 0.0, 0.0, lateral, 0.0, 0.0],
+        twist: [twist; 3],
+    }
+}
+
+/// Force of an element that moves as a whole with the compliance g, at the end of a step: `F = N(x + g (L - F))`, x the motion found with the load L.
+/// One step of Newton's method leads to `(N + N' g L) / (1 + N' g)`, N' by the place and by the speed with it.
+#[test]
+fn implicit_normal_forces_along_an_element_are_one_step_of_newtons_method() {
+    let law = parameters(&ContactLaw { stiffness_sharpness: 1e14, damping_sharpness: 1e14, ..FRICTIONLESS });
+    let (lateral, speed) = (3e-8, 700.0);
+    for values in elements_in_the_wall() {
+        let by_place = (pushed(&law, &values, 1e-8, 0.0) - pushed(&law, &values, -1e-8, 0.0)) / 2e-8;
+        let by_rate = (pushed(&law, &values, 0.0, 1e-3) - pushed(&law, &values, 0.0, -1e-3)) / 2e-3;
+        let rise = lateral * (by_place + speed * by_rate);
+        for load in [0.0, 200.0] {
+            let mut force = SegmentForce::none();
+            force.normal[0] = [-0.25 * load, 0.0, -0.75 * load, 0.0];
+            let motion = motion_of(&values, &ElementVector::zeros());
+            let compliance = compliance_of_a_whole(lateral, 0.0);
+            assert!(implicit_segment(&law, &SEGMENT, &motion, 0.0, (&compliance, speed), &mut force));
+            let expected = (pushed(&law, &values, 0.0, 0.0) + rise * load) / (1.0 + rise);
+            assert_close(force.ends[0] + force.ends[1], expected, 1e-6);
+            let [upper, _, lower, _] = force.load(0);
+            assert_close(upper + lower, -expected, 1e-6);
+        }
+    }
+}
+
+/// Sliding speed of an element that moves as a whole: `s = s_0 - c f (g_s + g_t R^2) mu(s) N` with the share f of the friction. A friction of 1 N takes
+/// c g_s from it by its way along the wall, and c g_t R^2 by its twist.
+#[test]
+fn implicit_friction_along_an_element_solves_the_friction_curve() {
+    let (radius, speed) = (SEGMENT.wall.contact_radius, 1e3);
+    let (lateral, twist) = (1e-8, 4e-6);
+    let compliance = compliance_of_a_whole(lateral, twist);
+    let values = rigid(0.0273, 0.0273);
+    for share in [1.0, 0.25] {
+        let law = parameters(&BASE).with_friction_share(share);
+        for rotation_speed in [4.0, 0.5, -0.5, 0.02] {
+            // The motion without friction, and with one that gave the surface another speed.
+            for before in [0.0, 3.0] {
+                let mut force = SegmentForce::none();
+                force.friction[1] = [-0.5 * before, 0.0, -0.5 * before, 0.0];
+                force.torque = [-0.5 * before * radius; 2];
+                let mut motion = motion_of(&values, &ElementVector::zeros());
+                motion.rates[1] = [-speed * lateral * before, 0.0, -speed * lateral * before, 0.0];
+                motion.twist_rates = [-speed * twist * before * radius; 2];
+                assert!(implicit_segment(
+                    &law,
+                    &SEGMENT,
+                    &motion,
+                    rotation_speed,
+                    (&compliance, speed),
+                    &mut force
+                ));
+                let normal = force.ends[0] + force.ends[1];
+                let opposed = |sliding: f64| {
+                    let friction = normal * law.friction_coefficient(sliding);
+                    sliding + speed * share * (lateral + twist * radius * radius) * friction
+                };
+                let free = rotation_speed.abs() * radius;
+                let (mut below, mut above) = (0.0, free);
+                for _ in 0..60 {
+                    let middle = 0.5 * (below + above);
+                    if opposed(middle) < free { below = middle } else { above = middle }
+                }
+                let friction = share * normal * law.friction_coefficient(rotation_speed.signum() * below);
+                // The solution leaves less than 1e-5 m/s, at a slope of up to 1 / v_ref.
+                let margin = share * normal * 1e-5 / BASE.friction_reference_speed;
+                let [upper, _, lower, _] = force.friction[1];
+                let (along, about) = (upper + lower, force.torque[0] + force.torque[1]);
+                assert!(
+                    (along + friction).abs() < margin,
+                    "{share} {rotation_speed}: {along} N for {friction} N"
+                );
+                assert!(
+                    (about + friction * radius).abs() < margin * radius,
+                    "{share} {rotation_speed}: {about} N m"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn loads_of_friction_along_an_element_are_linear_in_its_share() {
+    let mut values = rigid(0.0272, 0.0274);
+    (values[V], values[DOFS + V]) = (2e-3, 3e-3);
+    let moving = |law: &ContactParameters<f64>| {
+        let mut force = SegmentForce::none();
+        let motion = motion_of(&values, &ElementVector::zeros());
+        assert!(dynamic_segment(law, &SEGMENT, &motion, 12.0, &mut force));
+        let [upper, lower] = force.torque;
+        ElementVector::from_iterator([force.load(0), force.load(1), [upper, lower, 0.0, 0.0]].concat())
+    };
+    let of = |share: f64| {
+        let law = parameters(&BASE).with_friction_share(share);
+        let resting = static_segment(&law, &SEGMENT, &values, 12.0).unwrap();
+        let sliding = sliding_segment(&law, &SEGMENT, &values, 12.0).unwrap();
+        [
+            ElementMatrix::from_diagonal(&moving(&law)),
+            ElementMatrix::from_diagonal(&resting.force),
+            resting.tangent,
+            sliding.stiffness,
+            sliding.damping,
+        ]
+    };
+    for ((whole, quarter), none) in of(1.0).into_iter().zip(of(0.25)).zip(of(0.0)) {
+        let off = (quarter - none) - (whole - none) * 0.25;
+        assert!(whole != none && off.norm() < 1e-14 * whole.norm(), "{off}");
+    }
+}
+
+/// A shift of the twist turns both ends alike, so that a row of the damping adds up to what the wall does to one end.
+#[test]
+fn rubbing_of_an_element_is_the_part_of_its_damping_that_acts_on_the_twist() {
+    for values in elements_in_the_wall() {
+        let tangent = sliding_segment(&parameters(&BASE), &SEGMENT, &values, 0.3).unwrap();
+        for (end, row) in [THETA_Z, DOFS + THETA_Z].into_iter().enumerate() {
+            let by_twist = tangent.damping[(row, THETA_Z)] + tangent.damping[(row, DOFS + THETA_Z)];
+            assert!(by_twist != 0.0);
+            assert_close(tangent.rubbing[end], by_twist, 1e-13);
+        }
+    }
+}
+
+#[test]
+fn smooth_wall_along_an_element_has_the_derivatives_of_its_force() {
+    let law = parameters(&SOFT);
+    let mut values = rigid(0.02, 0.028);
+    (values[V], values[DOFS + V], values[THETA_X]) = (0.01, -0.004, 2e-3);
+    let (width, share) = (1e-3, 0.6);
+    let at = |values: &ElementVector, width: f64, share: f64| {
+        smooth_static_segment(&law, &SEGMENT, values, 12.6, width, share)
+    };
+    let here = at(&values, width, share);
+    let assert_derivative =
+        |ahead: ElementVector, behind: ElementVector, step: f64, derivative: ElementVector| {
+            let found = (ahead - behind) / (2.0 * step);
+            assert!(derivative.norm() > 0.0);
+            assert!((found - derivative).norm() < 1e-5 * derivative.norm(), "{found} against {derivative}");
+        };
+    let step = 1e-7;
+    for dof in (0..2 * DOFS).filter(|dof| [U, V, THETA_X, THETA_Y].contains(&(dof % DOFS))) {
+        let unit = ElementVector::from_fn(|i, _| if i == dof { step } else { 0.0 });
+        let (ahead, behind) = (at(&(values + unit), width, share), at(&(values - unit), width, share));
+        assert_derivative(ahead.force, behind.force, step, here.tangent.column(dof).into_owned());
+    }
+    let (ahead, behind) = (at(&values, width + step, share), at(&values, width - step, share));
+    assert_derivative(ahead.force, behind.force, step, here.by_width);
+    let (ahead, behind) = (at(&values, width, share + 1e-3), at(&values, width, share - 1e-3));
+    assert_derivative(ahead.force, behind.force, 1e-3, here.by_friction);
+}
+
+/// Two Gauss points integrate a linear gap exactly: then the smooth wall has the force of the wall itself in the limit.
+#[test]
+fn smooth_wall_along_an_element_becomes_the_wall_as_its_width_goes_to_zero() {
+    let law = parameters(&ContactLaw { stiffness_sharpness: 1e14, ..BASE });
+    for values in &elements_in_the_wall()[..2] {
+        let wall = static_segment(&law, &SEGMENT, values, -12.6).unwrap().force;
+        let error = |width: f64| {
+            (smooth_static_segment(&law, &SEGMENT, values, -12.6, width, 1.0).force - wall).norm()
+                / wall.norm()
+        };
+        let (coarse, fine) = (error(1e-5), error(1e-6));
+        assert!(fine < 0.011 * coarse && coarse < 0.01, "{coarse} {fine}");
+    }
+    let [of_upper, of_lower] = whole_segment(&SEGMENT).map(|(_, wall)| wall);
+    for share in
+        [|wall: &ContactNode<f64>| wall.stiffness_share, |wall: &ContactNode<f64>| wall.damping_share]
+    {
+        assert_close(share(&of_upper) + share(&of_lower), share(&SEGMENT.wall), 1e-15);
+    }
+}
+
+#[test]
+fn an_element_across_the_hole_touches_on_both_sides_alike() {
+    let law = parameters(&FRICTIONLESS);
+    let outside = SEGMENT.wall.clearance + 2e-4;
+    let contact = static_segment(&law, &SEGMENT, &rigid(outside, -outside), 1.0).unwrap();
+    assert!(contact.force[U] < -1.0 && contact.tangent.norm().is_finite());
+    assert_close(contact.force[DOFS + U], -contact.force[U], 1e-12);
+    assert_close(contact.ends[0], contact.ends[1], 1e-12);
+}
+
+/// A node with shares of stiffness and damping is one with the whole of a law of that stiffness and damping.
+#[test]
+fn shares_of_a_node_scale_the_law() {
+    let sharp = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
+    for law in [SOFT, sharp] {
+        let scaled = ContactLaw { stiffness: 0.3 * law.stiffness, damping: 2.0 * law.damping, ..law };
+        let (law, scaled) = (parameters(&law), parameters(&scaled));
+        // With the small clearance the node's own force turns it about the axis.
+        for clearance in [0.03, 1e-7] {
+            let whole = ContactNode { clearance, ..NODE };
+            let shared = ContactNode { stiffness_share: 0.3, damping_share: 2.0, ..whole };
+            let (u, v) = (0.6 * (clearance + 5e-5), -0.8 * (clearance + 5e-5));
+            let motion = LateralMotion { u, v, u_rate: 0.02, v_rate: -0.01, theta_z_rate: 0.1 };
+            let yielding = Yielding {
+                lateral: 2e-8,
+                surface: 3e-8,
+                speed: 4e3,
+                force: [-900.0, 1200.0],
+                normal: 1500.0,
+                friction: 200.0,
+            };
+            let forces = |law: &ContactParameters<f64>, node: &ContactNode<f64>| {
+                let moving = dynamic_contact(law, node, &motion, 0.3);
+                let implicit = implicit_contact(law, node, &motion, 0.3, &yielding);
+                let resting = static_contact(law, node, u, v, 0.3);
+                let smooth = smooth_static_contact(law, node, [u, v], 0.3, 1e-5, 0.6);
+                let sliding = sliding_tangent(law, node, u, v, 0.3).unwrap();
+                let of_motion =
+                    [moving, implicit].map(|contact| [contact.force_u, contact.force_v, contact.torque_z]);
+                [
+                    of_motion.as_flattened(),
+                    &[resting.force_u, resting.force_v, resting.torque_z],
+                    resting.tangent.as_flattened(),
+                    &smooth.force,
+                    smooth.tangent.as_flattened(),
+                    &smooth.by_width,
+                    &smooth.by_friction,
+                    sliding.stiffness.as_flattened(),
+                    sliding.damping.as_flattened(),
+                ]
+                .concat()
+            };
+            for (found, expected) in forces(&law, &shared).into_iter().zip(forces(&scaled, &whole)) {
+                assert_close(found, expected, 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn forces_on_a_node_turn_with_it_about_the_axis() {
+    let sharp = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
+    for (law, clearance) in [(SOFT, 0.04), (sharp, 1e-7)] {
+        let law = parameters(&law);
+        let node = ContactNode { clearance, ..NODE };
+        let forces = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let turned = |[u, v]: [f64; 2], sin: f64| [cos * u - sin * v, sin * u + cos * v];
+            let ([u, v], [u_rate, v_rate]) =
+                (turned([clearance + 5e-5, 0.0], sin), turned([0.02, -0.05], sin));
+            let motion = LateralMotion { u, v, u_rate, v_rate, theta_z_rate: 0.1 };
+            let yielding = Yielding {
+                lateral: 2e-8,
+                surface: 3e-8,
+                speed: 4e3,
+                force: turned([-1500.0, -300.0], sin),
+                normal: 1500.0,
+                friction: 300.0,
+            };
+            let moving = dynamic_contact(&law, &node, &motion, 0.3);
+            let implicit = implicit_contact(&law, &node, &motion, 0.3, &yielding);
+            [moving, implicit].map(|contact| {
+                let [along, across] = turned([contact.force_u, contact.force_v], -sin);
+                [along, across, contact.torque_z]
+            })
+        };
+        let straight = forces(0.0);
+        for angle in [0.7, 2.0, -1.1] {
+            for (found, expected) in forces(angle).as_flattened().iter().zip(straight.as_flattened()) {
+                assert_close(*found, *expected, 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn shares_of_the_friction_multiply() {
+    let law = parameters(&BASE);
+    assert_eq!(law.with_friction_share(0.5).with_friction_share(0.25), law.with_friction_share(0.125));
+    let none = ContactParameters::new(
+        &BASE,
+        &ActiveEffects { friction: false, friction_torque: false, ..ActiveEffects::ALL },
+    );
+    assert_eq!(none.with_friction_share(0.5), none);
+}
+
+#[test]
+fn friction_and_its_slope_by_one_division_are_those_of_the_curve() {
+    for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3)] {
+        let law = parameters(&ContactLaw { static_friction, dynamic_friction, ..BASE });
+        for speed in [-2.0, -0.05, 0.0, 1e-4, 0.03, 0.4, 20.0] {
+            let (friction, slope) = law.friction_with_slope(speed);
+            assert!((friction - law.friction_coefficient(speed)).abs() < 1e-15);
+            assert!((slope - law.friction_slope(speed)).abs() < 1e-14 * law.friction_slope(0.0));
+        }
+    }
+}
+
+#[test]
+fn a_wall_of_no_width_is_the_wall() {
+    let law = parameters(&BASE);
+    for (u, v) in [(0.0, 0.0), (0.01, -0.02), (NODE.clearance, 0.0), (0.0302, 0.0268)] {
+        let sharp = static_contact(&law, &NODE, u, v, 12.6);
+        let smooth = smooth_static_contact(&law, &NODE, [u, v], 12.6, 0.0, 1.0);
+        for (found, expected) in smooth.force.into_iter().zip([sharp.force_u, sharp.force_v, sharp.torque_z])
+        {
+            assert_close(found, expected, 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_share_of_the_friction_of_the_law_is_one_of_the_smooth_wall() {
+    let (law, less) = (parameters(&BASE), parameters(&BASE).with_friction_share(0.25));
+    let of = |law, share| smooth_static_contact(law, &NODE, [0.03, -0.026], 12.6, 1e-3, share);
+    let (found, expected) = (of(&less, 1.0), of(&law, 0.25));
+    assert_eq!(
+        (found.force, found.tangent, found.by_width),
+        (expected.force, expected.tangent, expected.by_width)
+    );
+    assert_eq!(found.by_friction, expected.by_friction.map(|force| 0.25 * force));
+}
+
+/// Force at the end of a step, with the compliance g: `F = N(x + g (L - F))`, x the motion found with the load L. One step of Newton's method leads to
+/// `(N + N' g L) / (1 + N' g)`, N' by the place and by the speed with it.
+#[test]
+fn an_implicit_normal_force_is_one_step_of_newtons_method() {
+    let law = ContactLaw { stiffness_sharpness: 1e14, damping_sharpness: 1e14, ..FRICTIONLESS };
+    let (parameters, lateral, speed) = (parameters(&law), 3e-8, 700.0);
+    let rise = lateral * (law.stiffness + speed * law.damping);
+    for load in [0.0, 200.0, 5000.0] {
+        let motion = LateralMotion { u: 0.0, v: -0.0403, u_rate: 0.0, v_rate: 0.02, theta_z_rate: 0.0 };
+        let yielding =
+            Yielding { lateral, surface: lateral, speed, force: [0.0, load], normal: load, friction: 0.0 };
+        let free = dynamic_contact(&parameters, &NODE, &motion, 0.0).normal;
+        let implicit = implicit_contact(&parameters, &NODE, &motion, 0.0, &yielding);
+        assert_close(implicit.normal, (free + rise * load) / (1.0 + rise), 1e-9);
+        assert_close(implicit.force_v, implicit.normal, 1e-12);
+    }
+}
+
+/// Node without friction along the wall: it stays on the line through its place without the wall, r_0 from the axis. Its force solves
+/// `F = K (r - j_0) + C s (r - r_0)`, `r = r_0 - g F`, and is found at once, from a force in any direction.
+#[test]
+fn a_node_without_clearance_and_friction_is_pushed_back_the_way_it_came() {
+    let law = ContactLaw { stiffness: 1e9, stiffness_sharpness: 1e15, damping_sharpness: 1e15, ..BASE };
+    let parameters = ContactParameters::new(&law, &ActiveEffects { friction: false, ..ActiveEffects::ALL });
+    let (lateral, speed, free) = (2e-8, 4e3, [3e-5, -4e-5]);
+    for clearance in [1e-9, 1e-7, 1e-5] {
+        let node = ContactNode { clearance, ..NODE };
+        for force in [[-2000.0, 0.0], [-1200.0, -900.0]] {
+            let [u, v] = [0, 1].map(|k| free[k] + lateral * force[k]);
+            let [u_rate, v_rate] = force.map(|force| speed * lateral * force);
+            let motion = LateralMotion { u, v, u_rate, v_rate, theta_z_rate: 0.0 };
+            let yielding =
+                Yielding { lateral, surface: lateral, speed, force, normal: 2000.0, friction: 300.0 };
+            let contact = implicit_contact(&parameters, &node, &motion, 12.6, &yielding);
+            let expected =
+                law.stiffness * (5e-5 - clearance) / (1.0 + lateral * (law.stiffness + speed * law.damping));
+            assert_close(contact.normal, expected, 1e-6);
+            assert_close(contact.force_u, -0.6 * expected, 1e-6);
+            assert_close(contact.force_v, 0.8 * expected, 1e-6);
+            assert!(contact.torque_z < 0.0);
+        }
+    }
+}
+
+#[test]
+fn an_implicit_lane_has_the_bits_of_a_node_alone() {
+    let law = ContactLaw { stiffness: 1e9, ..BASE };
+    let (one, four) = (parameters(&law), parameters(&law).in_lanes::<Four>());
+    // Turned by its own force, short of the wall, not turned, and on the axis.
+    let (clearances, radii) = ([1e-7, 0.04, 0.04, 1e-7], [5e-5, 0.03, 0.04001, 0.0]);
+    let wide = Four::splat;
+    let node = ContactNode {
+        clearance: Four::new(clearances),
+        contact_radius: wide(0.0635),
+        stiffness_share: wide(1.0),
+        damping_share: wide(1.0),
+    };
+    let motion = LateralMotion {
+        u: Four::new(radii.map(|r| 0.6 * r)),
+        v: Four::new(radii.map(|r| -0.8 * r)),
+        u_rate: wide(0.01),
+        v_rate: wide(-0.02),
+        theta_z_rate: wide(0.3),
+    };
+    let yielding = Yielding {
+        lateral: wide(2e-8),
+        surface: wide(3e-8),
+        speed: wide(4e3),
+        force: [wide(-1200.0), wide(900.0)],
+        normal: wide(1500.0),
+        friction: wide(200.0),
+    };
+    let together = implicit_contact(&four, &node, &motion, wide(0.3), &yielding);
+    for (lane, clearance) in clearances.into_iter().enumerate() {
+        let node = ContactNode { clearance, ..NODE };
+        let motion = LateralMotion {
+            u: motion.u.lane(lane),
+            v: motion.v.lane(lane),
+            u_rate: 0.01,
+            v_rate: -0.02,
+            theta_z_rate: 0.3,
+        };
+        let yielding = Yielding {
+            lateral: 2e-8,
+            surface: 3e-8,
+            speed: 4e3,
+            force: [-1200.0, 900.0],
+            normal: 1500.0,
+            friction: 200.0,
+        };
+        let alone = implicit_contact(&one, &node, &motion, 0.3, &yielding);
+        assert_eq!(together.force_u.lane(lane), alone.force_u);
+        assert_eq!(together.force_v.lane(lane), alone.force_v);
+        assert_eq!(together.torque_z.lane(lane), alone.torque_z);
+        assert_eq!(together.normal.lane(lane), alone.normal);
+    }
+}
+
+/// A string of three elements with its upper two nodes alike, a gauge and a held end.
+fn wall(effects: &ActiveEffects) -> Wall {
+    let gauge = ContactNode { clearance: 0.001, ..NODE };
+    let element = |share: f64| ContactSegment {
+        length: 2.0,
+        wall: ContactNode { stiffness_share: share, damping_share: 10.0 * share, ..NODE },
+    };
+    let sites = [Some(NODE), Some(NODE), Some(gauge), None];
+    Wall::new(&BASE, effects, sites.into_iter(), [0.2, 0.4, 0.8].map(element).into_iter())
+}
+
+#[test]
+fn elements_of_a_wall_at_nodes_are_shared_between_nodes_of_their_clearance() {
+    let along = wall(&ActiveEffects::ALL);
+    assert_eq!(along.segments().len(), 3);
+    assert_eq!(along.touchable().map(|(node, _)| node).collect::<Vec<_>>(), [0, 1, 2]);
+    let at_nodes = along.at_nodes();
+    assert!(at_nodes.segments().is_empty());
+    let shares = at_nodes.sites().iter().flatten().map(|site| (site.stiffness_share, site.damping_share));
+    for ((stiffness, damping), expected) in shares.zip([(1.1, 2.0), (1.3, 4.0), (1.0, 1.0)]) {
+        assert_close(stiffness, expected.0, 1e-15);
+        assert_close(damping, expected.1, 1e-15);
+    }
+    assert_eq!(at_nodes.sites().len(), 4);
+    let off = wall(&ActiveEffects { contact: false, ..ActiveEffects::ALL });
+    assert!(off.segments().is_empty() && off.touchable().next().is_none());
+}
+
+#[test]
+fn a_wall_keeps_its_friction_at_rest_under_another_law() {
+    let wall = wall(&ActiveEffects::ALL);
+    let mu = |wall: &Wall| wall.law().friction_at_rest(&NODE, 0.5);
+    assert_eq!(mu(&wall), BASE.static_friction);
+    let sliding = wall.with_friction_at_rest(StartFriction::Sliding);
+    assert_eq!(mu(&sliding), wall.law().friction_coefficient(0.5 * NODE.contact_radius));
+    let rougher = ContactLaw { static_friction: 0.6, dynamic_friction: 0.4, ..BASE };
+    let under = |wall: &Wall| wall.with_law(&rougher, &ActiveEffects::ALL);
+    assert_eq!(mu(&under(&wall)), 0.6);
+    assert_eq!(mu(&under(&sliding)), parameters(&rougher).friction_coefficient(0.5 * NODE.contact_radius));
+    let share = wall.with_friction_share(0.25);
+    assert_eq!(share.law(), &wall.law().with_friction_share(0.25));
+    assert_ne!(share.law(), wall.law());
+}
+
+/// Nodal values of a bent element of a helix at `radius` \[m\], of which both ends are `angle` \[rad\] from its middle.
+fn helical(radius: f64, angle: f64) -> ElementVector {
+    let (sin, cos) = angle.sin_cos();
+    let mut values = rigid(radius * cos, radius * cos);
+    (values[V], values[DOFS + V]) = (-radius * sin, radius * sin);
+    // The parabola through both ends goes through the middle at the radius.
+    let turn = 4.0 * radius * (1.0 - cos) / SEGMENT.length;
+    (values[THETA_Y], values[DOFS + THETA_Y]) = (turn, -turn);
+    let lean = -2.0 * radius * sin / SEGMENT.length;
+    (values[THETA_X], values[DOFS + THETA_X]) = (lean, lean);
+    values
+}
+
+/// Elements on a helix have their ends and their middle in the wall, and so the whole parabola through these gaps, but not all of the parabolas of u and v.
+#[test]
+fn loads_on_an_element_that_only_slides_with_the_rotation_are_those_at_rest() {
+    let law = parameters(&BASE).with_friction_at_rest(StartFriction::Sliding);
+    let helices = [1e-3, 1e-4, 1e-5, 1e-6].map(|gap| helical(SEGMENT.wall.clearance + gap, 0.5));
+    for values in elements_in_the_wall().into_iter().chain(helices) {
+        let resting = static_segment(&law, &SEGMENT, &values, 2.0).unwrap();
+        let mut moving = SegmentForce::none();
+        let motion = motion_of(&values, &ElementVector::zeros());
+        assert!(dynamic_segment(&law, &SEGMENT, &motion, 2.0, &mut moving));
+        for (found, expected) in moving.ends.into_iter().zip(resting.ends) {
+            assert_close(found, expected, 1e-12);
+        }
+        let [in_u, in_v] = planes(&resting.force);
+        let size = resting.force.norm();
+        for (found, expected) in
+            [moving.load(0), moving.load(1)].as_flattened().iter().zip([in_u, in_v].as_flattened())
+        {
+            assert!((found - expected).abs() < 1e-12 * size, "{moving:?} instead of {resting:?}");
         }
     }
 }

@@ -51,3 +51,42 @@ impl FlowMomentum {
         self.bore_flux + self.added_mass_coefficient * self.annulus_flux
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use drillsweep_scenario::preset;
+
+    use super::*;
+
+    /// Diameters of areas of 1/4, 2 and 5 m2: the annulus has 3 m2.
+    #[test]
+    fn both_flows_carry_the_mass_of_the_flow_rate() {
+        let diameter = |area: f64| (4.0 * area / PI).sqrt();
+        let geometry = FlowGeometry {
+            hole_diameter: diameter(5.0),
+            outer_diameter: diameter(2.0),
+            inner_diameter: diameter(0.25),
+        };
+        let mud = Mud {
+            density: 3.0,
+            flow_rate: 0.6,
+            ..preset("paper-200m").expect("a preset").mud.expect("a mud")
+        };
+        // U_i = 0.6 / (1/4) = 2.4 m/s, U_o = 0.6 / 3 = 0.2 m/s, chi = (5 + 2) / (5 - 2).
+        let momentum = FlowMomentum::new(&mud, &geometry);
+        for (found, expected) in [
+            (momentum.bore_mass, 0.75),
+            (momentum.displaced_mass, 6.0),
+            (momentum.bore_flux, 0.75 * 2.4 * 2.4),
+            (momentum.annulus_flux, 6.0 * 0.2 * 0.2),
+            (momentum.added_mass_coefficient, 7.0 / 3.0),
+            (momentum.coriolis, 2.0 * (0.75 * 2.4 - 14.0 * 0.2)),
+            (momentum.lateral_mass(), 0.75 + 14.0),
+            (momentum.lateral_flux(), 0.75 * 2.4 * 2.4 + 14.0 * 0.2 * 0.2),
+        ] {
+            assert!((found / expected - 1.0).abs() < 1e-14, "{found} instead of {expected}");
+        }
+    }
+}

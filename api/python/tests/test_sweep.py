@@ -76,7 +76,7 @@ def test_values_with_units_make_the_points_of_those_in_si(client: Client) -> Non
         client.plan("paper-200m", set={"mud.density": "500 gpm"})
     assert [error.pointer for error in refused.value.errors] == ["/set/mud.density"]
     with pytest.raises(Problem, match=r"m3/s, .* gpm") as malformed:
-        client.plan("paper-200m", axes={"flow_rate": [0.01, "0.02"]})
+        client.plan("paper-200m", axes={"flow_rate": ["500 gpm", "0.02"]})
     assert [error.pointer for error in malformed.value.errors] == ["/axes/flow_rate/values/1"]
 
 

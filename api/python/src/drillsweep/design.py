@@ -53,7 +53,9 @@ class AxisRange(_Ends, total=False):
     scale: Scale
 
 
-Axis = Range | AxisValues | AxisRange | Iterable[Value]
+Axis = (
+    Range | AxisValues | AxisRange | Iterable[SupportsFloat] | list[str] | list[float | str] | tuple[float | str, ...]
+)
 """The values of one parameter: a range, any list or array of values, or the service's own JSON."""
 
 

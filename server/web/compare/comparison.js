@@ -18,7 +18,7 @@ import { say } from "../data/units.js";
  * @property {string[]} lacking sentences about what points lack, which a view adds to
  * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to
- * @property {{depths: number[], read: (depth: number, told: any[]) => import("../ui/dom.js").Child[]}} [profiled] what a depth cursor reads of a
+ * @property {{depths: number[], read: (depth: number, points: any[]) => import("../ui/dom.js").Child[]}} [profiled] what a depth cursor reads of a
  *   view over depth, which sets it
  * @property {Map<number, string>} nodes which node of each point is shown, by the point's number
  * @property {AbortSignal} signal of the view, whose one picture stays while it is drawn anew

@@ -219,7 +219,7 @@ function endPanel(point, { quantity, time, values }) {
     name: point.name,
     showlegend: quantity !== "torque",
     line: { color: point.colour, width: 1 },
-    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
+    describe: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
   };
   return { ...point, traces: [trace], scale: quantity, yaxis: { title: title(quantity), quantity } };
 }

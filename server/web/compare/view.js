@@ -156,7 +156,7 @@ class ShownComparison {
     this.#cursor = new DepthCursor(
       this.#place,
       { query, keep: (changes) => this.#keep(changes) },
-      (depth, told) => this.#readAt(depth, told),
+      (depth, points) => this.#readAt(depth, points),
     );
   }
 

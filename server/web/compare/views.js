@@ -106,7 +106,7 @@ function overTime(point, time, values, dash = point.dash) {
     x: time,
     y: values,
     line: { color: point.colour, dash, width: 1 },
-    tell: (/** @type {{x: number, y: number}} */ { x: at, y }) => `${number(at, 6)} s: ${number(y)}`,
+    describe: (/** @type {{x: number, y: number}} */ { x: at, y }) => `${number(at, 6)} s: ${number(y)}`,
   };
 }
 
@@ -138,7 +138,7 @@ async function drawQuantities(place, comparison) {
   );
   comparison.profiled = {
     depths: nodes.get(deepest) ?? [],
-    read: (depth, told) =>
+    read: (depth, points) =>
       drawable.map((point) =>
         h(
           "p",
@@ -150,7 +150,7 @@ async function drawQuantities(place, comparison) {
                   profiles,
                   point.table,
                   depth,
-                  told.filter(({ trace }) => trace.name === point.name),
+                  points.filter(({ trace }) => trace.name === point.name),
                 )
           }`,
         ),
@@ -332,7 +332,7 @@ async function drawEnergy(place, comparison) {
     x: accounts.map(label),
     y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
     marker: { color: point.colour },
-    tell: (/** @type {{x: string, y: number}} */ { x, y }) => `${x}: ${number(y)} ${symbol}`,
+    describe: (/** @type {{x: string, y: number}} */ { x, y }) => `${x}: ${number(y)} ${symbol}`,
   }));
   return draw(
     place,

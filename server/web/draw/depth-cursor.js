@@ -19,7 +19,7 @@ const STEPS = {
 };
 
 /** @typedef {import("../ui/dom.js").Child} Child */
-/** @typedef {(depth: number, told: any[]) => Child | Child[]} Read */
+/** @typedef {(depth: number, reading: any[]) => Child | Child[]} Read */
 
 /** A slider over the nodes of a picture of profiles, with the values at its depth in words. */
 export class DepthCursor {
@@ -72,13 +72,13 @@ export class DepthCursor {
     this.element = h("div", {}, cursor, this.#reading);
   }
 
-  /** @param {import("./picture/nearest.js").Told[]} told at the mouse */
-  #hover(told) {
-    const { y } = told[0];
+  /** @param {import("./picture/nearest.js").Reading[]} reading at the mouse */
+  #hover(reading) {
+    const { y } = reading[0];
     this.#slideTo(nearest(this.#depths, y));
     // The mouse has a line of its own.
     if (this.#isMarked) this.#mark(null);
-    this.#tell(y, told);
+    this.#describe(y, reading);
   }
 
   /** Follows the picture that has just been drawn. @param {number[]} depths of its nodes */
@@ -116,7 +116,7 @@ export class DepthCursor {
   /** Shows and reads the values at a node. @param {number} index */
   #show(index) {
     this.#mark(this.#depths[index]);
-    this.#tell(this.#depths[index], []);
+    this.#describe(this.#depths[index], []);
   }
 
   /** Draws a line at a depth, or none. @param {number | null} depth */
@@ -134,9 +134,9 @@ export class DepthCursor {
     adjust(this.#place, { shapes: this.#isMarked ? [line] : [] });
   }
 
-  /** @param {number} depth in the unit in which it is shown @param {any[]} told */
-  #tell(depth, told) {
-    fill(this.#reading, `At ${depthOf(depth)}: `, this.#read(depth, told));
+  /** @param {number} depth in the unit in which it is shown @param {any[]} reading */
+  #describe(depth, reading) {
+    fill(this.#reading, `At ${depthOf(depth)}: `, this.#read(depth, reading));
   }
 }
 

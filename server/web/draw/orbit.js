@@ -38,7 +38,7 @@ export function orbitTrace(table, lowSide, line, name) {
     line: { width: 0.9, ...line },
     name,
     showlegend: name !== undefined,
-    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)}, ${number(y)}`,
+    describe: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)}, ${number(y)}`,
   };
 }
 
@@ -130,7 +130,7 @@ export function spectrumTrace(table, line, name) {
     line: { width: 1, ...line },
     name,
     showlegend: name !== undefined,
-    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} Hz: ${number(y)}`,
+    describe: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} Hz: ${number(y)}`,
   };
 }
 
@@ -162,7 +162,7 @@ export function peaksTrace(table, marker) {
     ),
     marker: { size: 6, ...marker },
     showlegend: false,
-    tell: (/** @type {{x: number, y: number}} */ { x, y }) => `line at ${number(x)} Hz: ${number(y)}`,
+    describe: (/** @type {{x: number, y: number}} */ { x, y }) => `line at ${number(x)} Hz: ${number(y)}`,
   };
 }
 

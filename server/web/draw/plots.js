@@ -56,7 +56,7 @@ const subjects = new WeakMap();
 /**
  * Draws, or redraws, a picture; zoomed as the link says, unless its axes are others than when it was drawn last.
  *
- * A trace is of the type `scatter`, `dots`, `bar`, `heatmap` or `contour` over `x` and `y`, which are values as they are shown; its `tell` says
+ * A trace is of the type `scatter`, `dots`, `bar`, `heatmap` or `contour` over `x` and `y`, which are values as they are shown; its `describe` says
  * a point in words, or else its `text` does.
  * @param {HTMLElement} place made by `canvas`
  * @param {any[]} traces

@@ -101,7 +101,7 @@ export class AccuracyCost {
       y: costs.map(({ error }) => 100 * error),
       marker: { size: 9, ...marker },
       showlegend: costs.length > 0,
-      tell: (/** @type {{row: number, x: number, y: number}} */ { row, x, y }) =>
+      describe: (/** @type {{row: number, x: number, y: number}} */ { row, x, y }) =>
         `${costs[row].text}: ${number(x, 3)} s, ${number(y, 3)} %`,
     });
     const [accuracies, rows] = [study?.accuracies ?? [], study?.others ?? []];

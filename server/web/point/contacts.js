@@ -51,7 +51,7 @@ export function contactMap(context, onTime, named) {
             zmin: 0,
             zmax: most / size,
             colorbar: colourBar(title("normal_force")),
-            tell: (/** @type {{x: number, y: number, z: number}} */ { x, y, z }) =>
+            describe: (/** @type {{x: number, y: number, z: number}} */ { x, y, z }) =>
               `${number(x)} s, ${number(y)} ${unit("measured_depth").symbol}: ${number(z)} ${unit("normal_force").symbol}`,
           },
         ],

@@ -118,7 +118,7 @@ function drawBars(place, columns, signal) {
       y: bars.flatMap(({ category }) => [category, category, category]),
       line: { color: LINES[group], width: BAR },
       showlegend: bars.length > 0,
-      tell: (/** @type {{y: string}} */ { y }) => y,
+      describe: (/** @type {{y: string}} */ { y }) => y,
     };
   });
   const largest = Math.max(...named.map(({ end }) => end));
@@ -158,7 +158,7 @@ function drawCurves(place, columns, signal) {
       y: scaled(sizes, size),
       line: { color: LINES[order % LINES.length], dash, width: 1.4 },
       showlegend: true,
-      tell: (/** @type {{y: number}} */ { y }) => `${words}: ${number(y)} ${symbol}`,
+      describe: (/** @type {{y: number}} */ { y }) => `${words}: ${number(y)} ${symbol}`,
     };
   });
   return draw(

@@ -229,7 +229,7 @@ class NodeMotion {
       y: shown("radius", values),
       name,
       line: { color: LINES[colour], width: 1 },
-      tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
+      describe: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x, 6)} s: ${number(y)}`,
     });
     this.#history.setAttribute("aria-label", `History of ${words}`);
     const layout = {

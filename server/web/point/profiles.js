@@ -111,7 +111,7 @@ export async function drawProfiles(place, names, points, signal) {
           legendgroup: String(order),
           showlegend: column === 0 && points.length > 1,
           line: { color: point.colour, dash: point.dash, width: 1.4 },
-          tell: (/** @type {{x: number}} */ { x }) => number(x).replace("-", "−"),
+          describe: (/** @type {{x: number}} */ { x }) => number(x).replace("-", "−"),
         },
       ];
     }),
@@ -204,8 +204,8 @@ export function profiles(context) {
   });
   /** @type {Record<string, any>} */
   const tables = {};
-  const cursor = new DepthCursor(place, context, (depth, told) =>
-    reading(ticks.names(), (name) => tables[tableOf(name)], depth, told),
+  const cursor = new DepthCursor(place, context, (depth, points) =>
+    reading(ticks.names(), (name) => tables[tableOf(name)], depth, points),
   );
   const begin = generations();
 
@@ -259,14 +259,14 @@ export function nodeDepths(names, table) {
  * @param {string[]} names
  * @param {(name: string) => any} table of a quantity
  * @param {number} depth in the unit in which it is shown
- * @param {any[]} told points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
+ * @param {any[]} points points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
  */
-export function reading(names, table, depth, told) {
+export function reading(names, table, depth, points) {
   const words = names
     .filter((name) => table(name)?.columns[name])
     .map((name) => {
       const { value, depth: own } = overDepth(name, table(name));
-      const seen = told.find((point) => point.trace.meta === name)?.x ?? value[nearest(own, depth)];
+      const seen = points.find((point) => point.trace.meta === name)?.x ?? value[nearest(own, depth)];
       return `${label(name)} ${say(name, seen === null ? null : Number(seen) * unit(name).size)}`;
     });
   return words.join(" · ");

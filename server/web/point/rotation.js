@@ -209,7 +209,7 @@ export function rotation(context) {
           yaxis: quantity === "torque" ? "y2" : "y",
           name: `${quantity === "torque" ? "torque" : "speed"}, ${end}`,
           line: { color: /** @type {any} */ (colours)[end][quantity], width: 1.2 },
-          tell: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} s: ${number(y)}`,
+          describe: (/** @type {{x: number, y: number}} */ { x, y }) => `${number(x)} s: ${number(y)}`,
         })),
         { showlegend: true, ...twoPanels() },
         context.signal,

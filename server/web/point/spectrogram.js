@@ -233,7 +233,7 @@ export async function drawSpectrogram(place, table, { isLog, range, most }, sign
         zmax: largest,
         customdata: rows.map((/** @type {(number | null)[]} */ row) => shown("amplitude", row)),
         colorbar: { ...colourBar(title("amplitude")), ...(isLog ? logTicks(least, largest) : {}) },
-        tell: (/** @type {{x: number, y: number, customdata: number}} */ { x, y, customdata }) =>
+        describe: (/** @type {{x: number, y: number, customdata: number}} */ { x, y, customdata }) =>
           `${number(x)} s, ${number(y)} Hz: ${number(customdata, 3)} ${unit("amplitude").symbol}`,
       },
     ],

@@ -58,7 +58,7 @@ export class Preview {
       x: values(x),
       y: y ? values(y) : points.map(() => 0),
       marker: { color: LINES[0], size: points.length > 500 ? 4 : 8 },
-      tell: (/** @type {{x: number, y: number}} */ { x: across, y: up }) =>
+      describe: (/** @type {{x: number, y: number}} */ { x: across, y: up }) =>
         y ? `${number(across)}, ${number(up)}` : number(across),
     };
     await draw(

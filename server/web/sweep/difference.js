@@ -292,7 +292,7 @@ class Difference {
       `difference of ${label(colour)} over ${label(x)}${y ? ` and ${label(y)}` : ""}`,
     );
     const name = `difference of ${context.depths.label(colour)}${symbol ? ` [${symbol}]` : ""}`;
-    const told = {
+    const points = {
       text: pairs.map((pair) => hoverText(pair, shown, symbol, context.biases, other.biases)),
       keys: pairs.map(
         (pair) => `${context.sweep.id}:${pair.ordinal},${other.sweep.id}:${pair.partner.ordinal}`,
@@ -305,10 +305,10 @@ class Difference {
     });
     const traces = y
       ? [
-          cellTrace(pairs, { x, y, spans: context.spans }, name, told),
-          ...sampleTraces(samplesOf(pairs, x, y, told), this.#place),
+          cellTrace(pairs, { x, y, spans: context.spans }, name, points),
+          ...sampleTraces(samplesOf(pairs, x, y, points), this.#place),
         ]
-      : lineTraces(pairs, x, colour, [nameOf(context.sweep), nameOf(other.sweep)], told);
+      : lineTraces(pairs, x, colour, [nameOf(context.sweep), nameOf(other.sweep)], points);
     const about = (/** @type {string} */ of, /** @type {number[]} */ values) => ({
       ...axis(of),
       range: sampledRange(
@@ -455,7 +455,7 @@ function hoverText(pair, { x, y, colour }, symbol, mine, theirs) {
 /**
  * Differences over two parameters as cells.
  * @param {Pair[]} pairs @param {{x: string, y: string, spans: Record<string, any>}} axes @param {string} name of the difference
- * @param {{text: string[], keys: string[]}} told
+ * @param {{text: string[], keys: string[]}} points
  */
 function cellTrace(pairs, { x, y, spans }, name, { text, keys }) {
   const across = distinct(pairs.map((pair) => pair.x)).map(Number);
@@ -499,7 +499,7 @@ function largestOf(pairs) {
 /** Part of the largest difference beyond which white is seen better on its colour. */
 const DARK = 0.6;
 
-/** @param {Pair[]} pairs @param {string} x @param {string} y @param {{text: string[], keys: string[]}} told @returns {import("../draw/samples.js").Sample[]} */
+/** @param {Pair[]} pairs @param {string} x @param {string} y @param {{text: string[], keys: string[]}} points @returns {import("../draw/samples.js").Sample[]} */
 function samplesOf(pairs, x, y, { text, keys }) {
   const [columns, rows] = [
     ranksOf(distinct(pairs.map((pair) => pair.x)).map(Number)),
@@ -521,7 +521,7 @@ function samplesOf(pairs, x, y, { text, keys }) {
 /**
  * Both results over one parameter, and their difference below.
  * @param {Pair[]} pairs @param {string} x @param {string} colour @param {string[]} names of the sweeps
- * @param {{text: string[], keys: string[]}} told
+ * @param {{text: string[], keys: string[]}} points
  */
 function lineTraces(pairs, x, colour, [first, second], { text, keys }) {
   const order = pairs.map((_, index) => index).sort((a, b) => pairs[a].x - pairs[b].x);

@@ -82,7 +82,7 @@ class ParallelCoordinates {
     this.#context = context;
     this.#picture = new ParallelPicture(
       {
-        filtered: () => this.#tell(),
+        filtered: () => this.#describe(),
         released: () =>
           context.keep({
             brush:
@@ -185,7 +185,7 @@ class ParallelCoordinates {
         columns.map((column) => column[rows[line]]),
       );
     this.#picture.show(this.#dimensions, names.indexOf(colour));
-    this.#tell();
+    this.#describe();
   }
 
   #drawControls() {
@@ -227,7 +227,7 @@ class ParallelCoordinates {
   }
 
   /** Shows the filters as numbers, and how many points pass them. */
-  #tell() {
+  #describe() {
     const dimensions = this.#dimensions;
     this.#fields.show(dimensions.map((dimension) => ({ ...dimension, ends: endsOf(dimension) })));
     const kept = keptLines(dimensions).length;

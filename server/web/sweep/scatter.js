@@ -116,12 +116,12 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
   const [atX, atY] = [at(x, xs), at(y, ys)];
   const part = (/** @type {string} */ name, /** @type {Values} */ values, /** @type {number} */ index) =>
     `${depths.label(name)} ${say(name, values[index])}${biases.beside(name, Number(ordinals[index]))}`;
-  const tell = (/** @type {number} */ index) =>
+  const describe = (/** @type {number} */ index) =>
     [`point ${ordinals[index]}`, part(x, xs, index), part(y, ys, index), part(colour, colours, index)].join(
       "<br>",
     );
   // Of many points, only the one next to the mouse is put into words.
-  const text = isMany ? undefined : ordinals.map((_, index) => tell(index));
+  const text = isMany ? undefined : ordinals.map((_, index) => describe(index));
   const base = { type: isMany ? "dots" : "scatter", mode: "markers" };
   const size = isMany ? 4 : 8;
   if (!isText(colours)) {
@@ -132,7 +132,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
         x: atX,
         y: atY,
         text,
-        tell: isMany ? (/** @type {{row: number}} */ { row }) => tell(row) : undefined,
+        describe: isMany ? (/** @type {{row: number}} */ { row }) => describe(row) : undefined,
         customdata: ordinals,
         marker: { size, color, colorscale: lineScale(), colorbar: colourBar(depths.title(colour)) },
       },
@@ -146,7 +146,7 @@ function tracesOf({ biases, depths }, { x, y, colour }, { ordinals, xs, ys, colo
       x: rows.map((index) => atX[index]),
       y: rows.map((index) => atY[index]),
       text: text && rows.map((index) => text[index]),
-      tell: isMany ? (/** @type {{row: number}} */ { row }) => tell(rows[row]) : undefined,
+      describe: isMany ? (/** @type {{row: number}} */ { row }) => describe(rows[row]) : undefined,
       customdata: rows.map((index) => ordinals[index]),
       marker: {
         size,

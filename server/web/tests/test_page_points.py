@@ -230,7 +230,7 @@ def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> N
     picture.locator(".area").first.scroll_into_view_if_needed()
     box = picture.locator(".area").first.bounding_box()
     assert box is not None
-    labels = picture.locator(".told")
+    labels = picture.locator(".reading")
     reading = page.get_by_role("status").filter(has_text=re.compile("^(At|Point at) "))
 
     def agrees() -> bool:

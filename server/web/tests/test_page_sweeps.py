@@ -870,7 +870,7 @@ def test_a_map_ends_at_its_samples_and_marks_them(opened: Opens, named: Sweep) -
     assert box is not None
     spare = 0.03 / 1.06
     page.mouse.move(box["x"] + (1 - spare) * box["width"] + 1, box["y"] + spare * box["height"] - 1, steps=3)
-    expect(picture.locator(".told")).to_be_visible()
+    expect(picture.locator(".reading")).to_be_visible()
     page.mouse.down()
     page.mouse.up()
     corner = table[(table["flow_rate"] == 0.04) & (table["mud_density"] == 1800)]["ordinal"].iloc[0]
@@ -1241,7 +1241,7 @@ def test_dots_of_many_points_are_read_and_opened(idle: str, opened: Opens) -> No
         box["y"] + (high - density) / (high - low) * box["height"],
     )
     page.mouse.move(*place)
-    label = picture.locator(".told")
+    label = picture.locator(".reading")
     expect(label).to_contain_text(f"mud density {density:.0f}")
     ordinal = int(str(label.locator("div").first.text_content()).removeprefix("point "))
     # Zooming the axes paints the dots anew.

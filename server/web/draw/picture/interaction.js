@@ -20,7 +20,7 @@ const [CLICK, THIN] = [4, 12];
  * @property {(axis: Axis) => Panel | undefined} panelOf
  * @property {(panel: Panel) => Axis[]} axesIn
  * @property {(ranges: Map<Axis, [number, number]>) => void} setRanges
- * @property {(px: number, py: number) => unknown} tell
+ * @property {(px: number, py: number) => unknown} describe
  * @property {(px: number, py: number) => void} click
  * @property {() => void} hush
  * @property {(axes?: Axis[]) => void} reset
@@ -121,7 +121,7 @@ export class Interaction {
     this.#moved = null;
     if (!now) return;
     if (this.#drag) this.#follow(this.#drag, now);
-    else this.#picture.tell(now.x, now.y);
+    else this.#picture.describe(now.x, now.y);
   }
 
   /** @param {Drag} drag @param {Place} now */

@@ -6,18 +6,18 @@ import { fill, h } from "../../ui/dom.js";
 /** Distance of a label from its point [pixels]. */
 const AWAY = 12;
 
-/** @typedef {import("./nearest.js").Told} Told */
+/** @typedef {import("./nearest.js").Reading} Reading */
 
 /**
  * Lines that are said of a point: by its trace, or else its values.
- * @param {Told} told
+ * @param {Reading} reading
  * @returns {string[]}
  */
-export function linesOf(told) {
-  const { trace, row, column } = told;
+export function linesOf(reading) {
+  const { trace, row, column } = reading;
   const text = (trace.hovertext ?? trace.text)?.[row];
-  const said = trace.tell?.(told) ?? (Array.isArray(text) ? text[column] : text);
-  return String(said ?? [told.x, told.y].map(wordOf).join(", "))
+  const said = trace.describe?.(reading) ?? (Array.isArray(text) ? text[column] : text);
+  return String(said ?? [reading.x, reading.y].map(wordOf).join(", "))
     .split("<br>")
     .filter((line) => line.trim() !== "");
 }
@@ -38,14 +38,14 @@ export class Labels {
     fill(this.element, this.#cursor);
   }
 
-  /** Shows a label at each of some groups of points, which stand below each other in it. @param {Told[][]} groups */
+  /** Shows a label at each of some groups of points, which stand below each other in it. @param {Reading[][]} groups */
   show(groups) {
     const labels = groups.map((group) =>
       h(
         "div",
-        { class: "told" },
-        group.flatMap((told) =>
-          linesOf(told).map((line) => this.#line(line, group.length > 1 ? told : null)),
+        { class: "reading" },
+        group.flatMap((reading) =>
+          linesOf(reading).map((line) => this.#line(line, group.length > 1 ? reading : null)),
         ),
       ),
     );
@@ -73,7 +73,7 @@ export class Labels {
     });
   }
 
-  /** @param {string} words @param {Told | null} marked the point whose colour stands before the words */
+  /** @param {string} words @param {Reading | null} marked the point whose colour stands before the words */
   #line(words, marked) {
     const mark = marked && h("span", { class: "mark" });
     if (mark) mark.style.background = marked.trace.line?.color ?? "";

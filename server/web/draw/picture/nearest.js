@@ -12,8 +12,8 @@ const [NEAR, NEAR_DOT, NEAR_MARK] = [20, 8, 10];
  * @typedef {{trace: any, panel: Panel, x: import("./axis.js").Axis, y: import("./axis.js").Axis, places?: Places, across?: ArrayLike<number>, up?: ArrayLike<number>, bars?: import("./bars.js").Bar[]}} Drawn
  */
 /**
- * A point that is told of: its trace, its row there (and column in a grid), its values, its key for clicks, and its place [pixels].
- * @typedef {{trace: any, row: number, column: number, x: any, y: any, z: any, customdata: any, at: {x: number, y: number}}} Told
+ * A point that is read: its trace, its row there (and column in a grid), its values, its key for clicks, and its place [pixels].
+ * @typedef {{trace: any, row: number, column: number, x: any, y: any, z: any, customdata: any, at: {x: number, y: number}}} Reading
  */
 
 /**
@@ -69,20 +69,20 @@ export function cellOf(edges, pixel) {
  * @param {Drawn[]} drawn traces of the panel
  * @param {number} px
  * @param {number} py
- * @returns {Told | null}
+ * @returns {Reading | null}
  */
 export function closest(drawn, px, py) {
   const isOverCells = drawn.some(({ across }) => across);
-  /** @type {{told: () => Told, distance: number} | null} */
+  /** @type {{reading: () => Reading, distance: number} | null} */
   let best = null;
   for (const one of drawn) {
     if (!one.places || one.trace.isSilent) continue;
     const { trace, places } = one;
     const most = trace.type === "dots" ? NEAR_DOT : isOverCells ? NEAR_MARK : NEAR;
     const found = nearestPlace(places, px, py, best ? Math.min(most, best.distance) : most);
-    if (found) best = { distance: found.distance, told: () => pointOf(one, found.row) };
+    if (found) best = { distance: found.distance, reading: () => pointOf(one, found.row) };
   }
-  if (best) return best.told();
+  if (best) return best.reading();
   for (const one of drawn.toReversed()) {
     const bar = one.bars && barAt(one.bars, px, py);
     if (bar) return pointOf(one, bar.row, { x: bar.x + bar.width, y: bar.y + bar.height });
@@ -92,7 +92,7 @@ export function closest(drawn, px, py) {
   return null;
 }
 
-/** The cell at a place. @param {Drawn} drawn @param {number} px @param {number} py @returns {Told | null} */
+/** The cell at a place. @param {Drawn} drawn @param {number} px @param {number} py @returns {Reading | null} */
 function cellTold({ trace, x, y, across = [], up = [] }, px, py) {
   const [column, row] = [cellOf(across, px), cellOf(up, py)];
   const z = row < 0 || column < 0 ? null : trace.z[row][column];
@@ -125,7 +125,7 @@ function valueOf(values, cell, cells, axis, pixel) {
  * @param {Drawn[]} drawn
  * @param {"x" | "y"} direction
  * @param {number} pixel along it
- * @returns {Told[]}
+ * @returns {Reading[]}
  */
 export function alongside(drawn, direction, pixel) {
   return drawn.flatMap((one) => {
@@ -136,7 +136,7 @@ export function alongside(drawn, direction, pixel) {
   });
 }
 
-/** @param {Drawn} drawn @param {number} row @param {{x: number, y: number}} [at] @returns {Told} */
+/** @param {Drawn} drawn @param {number} row @param {{x: number, y: number}} [at] @returns {Reading} */
 function pointOf({ trace, places }, row, at) {
   return {
     trace,

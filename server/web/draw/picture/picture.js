@@ -20,11 +20,11 @@ import { drawNote, drawShape } from "./shapes.js";
 /** @typedef {import("./layout.js").Frame} Frame */
 /** @typedef {import("./layout.js").Panel} Panel */
 /** @typedef {import("./nearest.js").Drawn} Drawn */
-/** @typedef {import("./nearest.js").Told} Told */
+/** @typedef {import("./nearest.js").Reading} Reading */
 /** @typedef {import("./svg-pen.js").Pen} Pen */
 
 /**
- * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are told of, `choosing` and `chosen` with
+ * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are read, `choosing` and `chosen` with
  * the area that is dragged over (`null` where the drag was broken off), `zoomed` when the reader has changed its ranges, and `painted`.
  */
 export class Picture {
@@ -179,19 +179,19 @@ export class Picture {
     this.redraw();
   }
 
-  /** Tells what is at a place. @param {number} px @param {number} py @returns {Told[]} */
-  tell(px, py) {
-    const told = this.#told(px, py);
+  /** Describes what is at a place. @param {number} px @param {number} py @returns {Reading[]} */
+  describe(px, py) {
+    const reading = this.#reading(px, py);
     const { hovermode } = this.layout;
-    if (!told.length) this.hush();
-    else if (hovermode === "closest") this.#labels.show([told]);
+    if (!reading.length) this.hush();
+    else if (hovermode === "closest") this.#labels.show([reading]);
     else {
       const pixel = hovermode === "x" ? px : py;
-      this.#labels.show(this.#byPanel(told, hovermode, pixel));
-      this.#labels.cross(hovermode, pixel, told[0][/** @type {"x" | "y"} */ (hovermode)], this.frame);
+      this.#labels.show(this.#byPanel(reading, hovermode, pixel));
+      this.#labels.cross(hovermode, pixel, reading[0][/** @type {"x" | "y"} */ (hovermode)], this.frame);
     }
-    if (told.length) this.dispatch("pointhover", { points: told });
-    return told;
+    if (reading.length) this.dispatch("pointhover", { points: reading });
+    return reading;
   }
 
   /** Takes the labels away. */
@@ -201,7 +201,7 @@ export class Picture {
 
   /** @param {number} px @param {number} py */
   click(px, py) {
-    const points = this.tell(px, py);
+    const points = this.describe(px, py);
     if (points.length) this.dispatch("pointclick", { points });
   }
 
@@ -362,8 +362,8 @@ export class Picture {
     return undefined;
   }
 
-  /** Points that are told of at a place. @param {number} px @param {number} py @returns {Told[]} */
-  #told(px, py) {
+  /** Points that are read at a place. @param {number} px @param {number} py @returns {Reading[]} */
+  #reading(px, py) {
     const panel = this.panelAt(px, py);
     if (!panel) return [];
     const { hovermode } = this.layout;
@@ -380,10 +380,10 @@ export class Picture {
     return alongside(along, hovermode, hovermode === "x" ? px : py);
   }
 
-  /** Points of each panel, at the line of the cursor. @param {Told[]} told @param {"x" | "y"} direction @param {number} pixel */
-  #byPanel(told, direction, pixel) {
+  /** Points of each panel, at the line of the cursor. @param {Reading[]} reading @param {"x" | "y"} direction @param {number} pixel */
+  #byPanel(reading, direction, pixel) {
     const panelOf = new Map(this.#drawn.map(({ trace, panel }) => [trace, panel]));
-    const groups = this.#panels.map((panel) => told.filter(({ trace }) => panelOf.get(trace) === panel));
+    const groups = this.#panels.map((panel) => reading.filter(({ trace }) => panelOf.get(trace) === panel));
     return groups
       .filter((group) => group.length)
       .map(([first, ...others]) => {

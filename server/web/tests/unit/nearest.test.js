@@ -33,28 +33,28 @@ test("the nearest of many places is that of a search through all", () => {
   near(found.distance, least);
 });
 
-test("what is too far and gaps are not told of", () => {
+test("what is too far and gaps are not read", () => {
   const places = { x: Float64Array.of(0, NaN), y: Float64Array.of(0, 5) };
   assert.equal(nearestPlace(places, 30, 0, 20), null);
   assert.equal(nearestPlace(places, 3, 4, 5).row, 0);
   assert.equal(nearestAlong(Float64Array.of(0, 1), Float64Array.of(NaN, 7), 0), 1);
 });
 
-test("of equally near samples the last one is told of, which ends an element", () => {
+test("of equally near samples the last one is read, which ends an element", () => {
   assert.equal(nearestAlong(Float64Array.of(0, 10, 10, 20), Float64Array.of(1, 2, 3, 4), 11), 2);
 });
 
-test("the mark above another one is told of, with its key", () => {
+test("the mark above another one is read, with its key", () => {
   const one = drawn(marks([50], [50], { customdata: [7] }));
   const other = drawn(marks([50], [50], { customdata: [8] }));
-  const told = closest([one, other], 52, 50);
-  assert.equal(told.customdata, 8);
-  assert.deepEqual([told.x, told.y], [50, 50]);
+  const reading = closest([one, other], 52, 50);
+  assert.equal(reading.customdata, 8);
+  assert.deepEqual([reading.x, reading.y], [50, 50]);
   assert.equal(closest([one], 50, 75), null);
   assert.equal(closest([drawn(marks([50], [50], { isSilent: true }))], 50, 50), null);
 });
 
-test("a mark is told of before the cell below it, and else the cell", () => {
+test("a mark is read before the cell below it, and else the cell", () => {
   const cells = drawn({
     type: "heatmap",
     x: [0, 50, 100],
@@ -70,8 +70,8 @@ test("a mark is told of before the cell below it, and else the cell", () => {
   });
   const mark = drawn(marks([25], [25], { customdata: [99] }));
   assert.equal(closest([cells, mark], 25, 77).customdata, 99);
-  const told = closest([cells, mark], 10, 20);
-  assert.deepEqual([told.customdata, told.x, told.y, told.z], [13, 25, 75, 3]);
+  const reading = closest([cells, mark], 10, 20);
+  assert.deepEqual([reading.customdata, reading.x, reading.y, reading.z], [13, 25, 75, 3]);
   assert.equal(closest([cells, mark], 90, 10), null);
 });
 
@@ -90,7 +90,7 @@ test("cells are found between their ends, rising or falling", () => {
   }
 });
 
-test("all lines are told of along a cursor", () => {
+test("all lines are read along a cursor", () => {
   const lines = [drawn(marks([0, 10, 20], [1, 2, 3])), drawn(marks([0, 11, 20], [4, null, 6]))];
   assert.deepEqual(
     alongside(lines, "x", 12).map(({ y }) => y),

@@ -425,7 +425,7 @@ mod tests {
             ("2.65 sg", &MUD_DENSITY, 2_650.0),
             ("1.2 g/cm³", &MUD_DENSITY, 1_200.0),
             ("10000 ft·lbf", &TORQUE, 13_558.179_483_314_004),
-            ("20 kft-lb", &TORQUE, 27_116.358_966_628_008),
+            ("20 kft-lb", &TORQUE, 27_116.358_966_628_01),
             ("0.25 rev/s", &SPEED_OF_ROTATION, 15.0),
             ("30°", &ANGLE_IN_DEGREES, 30.0),
             ("5 %", &RATIO, 0.05),

@@ -1,6 +1,9 @@
 //! Numbers with their units as people write them, such as `10.5 ppg`, `12 1/4 in` or `2.5 klbf`, read exactly: the result is the double
 //! nearest to the number in the unit in which its quantity is kept, so that `215.9 mm` and `8 1/2 in` are 0.2159 m to the last bit.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use bigdecimal::{BigDecimal, Zero};
 use thiserror::Error;
 
@@ -22,18 +25,24 @@ pub fn read(text: &str, units: &Units) -> Result<f64, EntryError> {
     if symbol.is_empty() {
         return Err(malformed());
     }
-    let family = Family::of(units);
-    let Some(unit) = family.and_then(|family| family.find(symbol)) else {
+    let unknown = || {
         let dimension = FAMILIES.iter().find_map(|family| family.find(symbol).map(|_| family.dimension));
-        return Err(EntryError::Unit { symbol: symbol.to_owned(), dimension, fits: fitting(units) });
+        EntryError::Unit { symbol: symbol.to_owned(), dimension, fits: fitting(units) }
     };
-    let kept = family.and_then(|family| family.find(units.kept)).ok_or_else(malformed)?;
-    let Fraction(numerator, denominator) = number * unit.size() / kept.size();
-    // A double is nearest to the exact quotient unless 40 digits of that are those of a middle between two.
-    let value: f64 =
-        (numerator / denominator).with_prec(40).to_scientific_notation().parse().map_err(|_| malformed())?;
+    let unit = Family::of(units).and_then(|family| family.find(symbol)).ok_or_else(unknown)?;
+    let factor = FACTORS.get(&(unit.symbols[0], units.kept)).ok_or_else(unknown)?;
+    let value: f64 = (number * factor).to_scientific_notation().parse().map_err(|_| malformed())?;
     if value.is_finite() { Ok(value) } else { Err(EntryError::Size) }
 }
+
+/// Sizes of all units in the others of their family, by both symbols, to a hundred digits. A division takes tens of microseconds, and a
+/// request may have millions of texts.
+static FACTORS: LazyLock<HashMap<(&str, &str), BigDecimal>> = LazyLock::new(|| {
+    let pairs = FAMILIES.iter().flat_map(|family| {
+        family.units.iter().flat_map(|unit| family.units.iter().map(move |kept| (unit, kept)))
+    });
+    pairs.map(|(unit, kept)| ((unit.symbols[0], kept.symbols[0]), unit.in_units_of(kept))).collect()
+});
 
 /// Reason why a text is no number of a quantity: the valid texts, as in "must be ...".
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -76,53 +85,32 @@ fn fitting(units: &Units) -> String {
     symbols(units).join(", ")
 }
 
-/// An exact number: numerator and denominator.
-struct Fraction(BigDecimal, BigDecimal);
-
-impl std::ops::Mul for Fraction {
-    type Output = Fraction;
-
-    fn mul(self, other: Fraction) -> Fraction {
-        Fraction(self.0 * other.0, self.1 * other.1)
-    }
-}
-
-impl std::ops::Div for Fraction {
-    type Output = Fraction;
-
-    fn div(self, other: Fraction) -> Fraction {
-        Fraction(self.0 * other.1, self.1 * other.0)
-    }
-}
-
 /// The number at the start of a text, decimal or with a fraction (`12 1/4`), and the rest without blanks around it.
-fn number(text: &str) -> Option<(Fraction, &str)> {
+fn number(text: &str) -> Option<(BigDecimal, &str)> {
     let (decimal, rest) = text.split_at(decimal_length(text));
-    let one = || BigDecimal::from(1);
     let whole: BigDecimal = decimal.parse().ok()?;
-    if let Some((numerator, denominator, rest)) = fraction(rest.trim_start_matches([' ', '-'])) {
-        if !decimal.bytes().all(|byte| byte.is_ascii_digit()) {
-            return None;
-        }
-        return Some((Fraction(whole * &denominator + numerator, denominator), rest));
+    if let Some((part, rest)) = fraction(rest.trim_start_matches([' ', '-'])) {
+        let is_whole = decimal.bytes().all(|byte| byte.is_ascii_digit());
+        return is_whole.then(|| (whole + part, rest));
     }
     // A fraction without a whole number before it: `3/4 in`.
-    if let Some((numerator, denominator, rest)) = fraction(text) {
-        return Some((Fraction(numerator, denominator), rest));
-    }
-    Some((Fraction(whole, one()), rest.trim()))
+    fraction(text).or_else(|| Some((whole, rest.trim())))
 }
 
-/// Digits over digits at the start of a text, and the rest.
-fn fraction(text: &str) -> Option<(BigDecimal, BigDecimal, &str)> {
+/// A fraction at the start of a text, of a half to sixty-fourths, and the rest.
+fn fraction(text: &str) -> Option<(BigDecimal, &str)> {
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     let (numerator, rest) = text.split_at(digits(text));
     let rest = rest.strip_prefix('/')?;
     let (denominator, rest) = rest.split_at(digits(rest));
-    let (numerator, denominator): (BigDecimal, BigDecimal) =
-        (numerator.parse().ok()?, denominator.parse().ok()?);
-    (!denominator.is_zero()).then_some((numerator, denominator, rest.trim()))
+    let part = PARTS.iter().find(|(parts, _)| *parts == denominator).map(|(_, part)| *part)?;
+    let (numerator, part): (BigDecimal, BigDecimal) = (numerator.parse().ok()?, part.parse().ok()?);
+    Some((numerator * part, rest.trim()))
 }
+
+/// Denominators of fractions, as on rulers, with the part that each stands for.
+const PARTS: [(&str, &str); 6] =
+    [("2", "0.5"), ("4", "0.25"), ("8", "0.125"), ("16", "0.0625"), ("32", "0.03125"), ("64", "0.015625")];
 
 /// Length of the decimal number at the start of a text: sign, digits, point, and an exponent of at most three digits.
 fn decimal_length(text: &str) -> usize {
@@ -151,9 +139,12 @@ struct Entry {
 }
 
 impl Entry {
-    fn size(&self) -> Fraction {
+    /// Size in units of another one.
+    fn in_units_of(&self, kept: &Entry) -> BigDecimal {
         let exact = |text: &str| text.parse().unwrap_or_else(|_| BigDecimal::zero());
-        Fraction(exact(self.size.0), exact(self.size.1))
+        let numerator: BigDecimal = exact(self.size.0) * exact(kept.size.1);
+        let denominator: BigDecimal = exact(self.size.1) * exact(kept.size.0);
+        numerator / denominator
     }
 }
 
@@ -466,8 +457,8 @@ mod tests {
                 for symbol in unit.symbols {
                     assert!(family.find(symbol).is_some_and(|found| std::ptr::eq(found, unit)), "{symbol}");
                 }
-                let Fraction(numerator, denominator) = unit.size();
-                assert!(!numerator.is_zero() && !denominator.is_zero(), "{}", unit.symbols[0]);
+                let factor = &FACTORS[&(unit.symbols[0], unit.symbols[0])];
+                assert_eq!(*factor, BigDecimal::from(1), "{}", unit.symbols[0]);
             }
         }
     }
@@ -485,9 +476,19 @@ mod tests {
             format!("a number with one of the units {fits}; `furlongs` is unknown")
         );
         let long = "9".repeat(100) + " ppg";
-        for text in
-            ["", "ppg", "12", "steel", "1,5 ppg ", "1.5/2 ppg", "1/0 ppg", "--1 ppg", "nan ppg", &long]
-        {
+        for text in [
+            "",
+            "ppg",
+            "12",
+            "steel",
+            "1,5 ppg ",
+            "1.5/2 ppg",
+            "1/0 ppg",
+            "1/3 ppg",
+            "--1 ppg",
+            "nan ppg",
+            &long,
+        ] {
             let message = refused(text);
             assert!(message.contains(fits), "{text}: {message}");
         }

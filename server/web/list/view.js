@@ -15,15 +15,12 @@ const REST_MS = 250;
 
 /** @type {import("../ui/router.js").View} */
 export async function show(main, route, signal) {
-  const filtered = debounced(
-    () => {
-      keep(filters.values);
-      taken.dispatchEvent(new Event("redraw"));
-      attend(sweeps.load(), signal);
-    },
-    REST_MS,
-    signal,
-  );
+  const rested = debounced(() => attend(sweeps.load(), signal), REST_MS, signal);
+  const filtered = () => {
+    keep(filters.values);
+    taken.dispatchEvent(new Event("redraw"));
+    rested();
+  };
   const filters = new Filters(route.query, filtered);
   const service = new Service(signal);
   const sweeps = new Sweeps(filters, signal);

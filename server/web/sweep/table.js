@@ -69,13 +69,17 @@ class PointTable {
   /** @param {Context} context */
   constructor(context) {
     this.#context = context;
-    const filtered = debounced(() => this.#keep({ filter: this.#filter.value || null }), 250, context.signal);
+    const filtered = debounced(() => attend(this.redraw(), context.signal), 250, context.signal);
     this.#filter = h("input", {
       type: "search",
       value: context.query.get("filter") ?? "",
       placeholder: "e.g. flow_rate>0.02 state=failed",
       size: 34,
-      oninput: filtered,
+      // Anything may draw the view again while the typing rests: the link has the filter before that.
+      oninput: () => {
+        context.keep({ filter: this.#filter.value || null });
+        filtered();
+      },
     });
     const grid = h("table", { "aria-label": "Points" }, h("thead", {}, this.#header), this.#body);
     this.#scroller = h(

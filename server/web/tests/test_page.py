@@ -236,6 +236,8 @@ def test_the_table_sorts_and_filters_in_the_units_shown(opened: Opens, named: Sw
     # After the tick, number, state and class of a point.
     expect(first.locator("td").nth(4)).to_have_text("0.04")
     page.get_by_role("searchbox").fill("mud_density>1500 flow_rate=0.01")
+    # At once, not after a rest of typing: what draws the view again meanwhile must not lose it.
+    assert "filter=mud_density" in page.evaluate("location.hash")
     expect(page.get_by_text("2 of 8 points")).to_be_visible()
     page.get_by_role("button", name=re.compile("Units")).click()
     # The same numbers, now in gallons a minute and pounds a gallon.

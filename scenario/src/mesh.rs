@@ -10,10 +10,11 @@ use crate::Scenario;
 
 /// Mesh of the string: `"auto"`, finer or coarser than that by a factor, or target element lengths.
 ///
-/// With `auto` lengths follow from the string, its wall and the accuracy: with the factor 1 a tool joint has one element, a body between tool joints eight, and
-/// whatever lies on the wall by itself (collars, stabilizers, plain pipe) elements of two thirds of the length (4 E I / kappa)^(1/4) over which a wall of
-/// kappa = `contact.stiffness_per_length` spreads a bent pipe's force. The accuracy chooses the factor: 1.4 at `draft`, 1 at `standard`,
-/// 0.4 at `reference`. Depths whose motion is recorded are nodes. It is meant for the contact law `per_length`.
+/// With `auto` lengths follow from the string, its wall and the accuracy: with the factor 1 a tool joint has one element, a body between tool joints
+/// eight (two if it lies more than 300 m above the bit and 50 m from recorded depths), and whatever lies on the wall by itself (collars,
+/// stabilizers, plain pipe) elements of two thirds of the length (4 E I / kappa)^(1/4) over which a wall of kappa = `contact.stiffness_per_length`
+/// spreads a bent pipe's force. The accuracy chooses the factor: 1.4 at `draft`, 1 at `standard`, 0.4 at `reference`. Depths whose motion is
+/// recorded are nodes. It is meant for the contact law `per_length`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum Mesh {

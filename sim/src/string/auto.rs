@@ -5,12 +5,14 @@
 //!
 //! - Bodies between joints sag under compression and touch the wall in their middle in a curved hole. With eight elements a body, orbits between
 //!   joints are within some 1 % of their limit.
+//! - Far above the bit, and far from every recorded depth, bodies only carry tension and torque and lie in their hole: two elements a body.
 //! - A part of the string on the wall presses itself in over (4 E I / kappa)^(1/4) next to a place that holds it off (Hetenyi 1946), 1.06 m for
 //!   collars of 0.159 m.
 //!
-//! `study/tests/contact_mesh.rs` compares positions of rest in three wells with much finer meshes, and docs/accuracy.md has settled orbits.
+//! `study/tests/contact_mesh.rs` compares positions of rest in three wells with much finer meshes, `sim/tests/real_well.rs` those of a string of
+//! 3,438 m, and docs/accuracy.md has settled orbits.
 
-use drillsweep_scenario::{Scenario, Section};
+use drillsweep_scenario::{NodeChoice, Scenario, Section};
 
 use crate::string::beam::BeamSection;
 
@@ -20,13 +22,23 @@ const JOINT_ELEMENTS: f64 = 1.0;
 /// Elements of a body between two tool joints.
 const BODY_ELEMENTS: f64 = 8.0;
 
+/// Elements of a body far above the bit.
+const FAR_BODY_ELEMENTS: f64 = 2.0;
+
+/// Distance above the bit \[m\] from which bodies are far: several assemblies.
+const FAR_FROM_BIT: f64 = 300.0;
+
+/// Distance from a recorded depth \[m\] from which bodies are far: some joints.
+const FAR_FROM_RECORDED: f64 = 50.0;
+
 /// Elements along the length over which a wall spreads a bent pipe's force.
 const ELEMENTS_A_SPREAD: f64 = 1.5;
 
-/// Target element lengths \[m\] of a section's bodies and tool joints.
-pub(super) fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
+/// Target element lengths \[m\] of body and tool joints of a piece of a section between two depths.
+pub(super) fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -> (f64, f64) {
     if let Some(joint) = &section.tool_joint {
-        return ((section.length - 2.0 * joint.length) / BODY_ELEMENTS, joint.length / JOINT_ELEMENTS);
+        let elements = if is_far(scenario, piece) { FAR_BODY_ELEMENTS } else { BODY_ELEMENTS };
+        return ((section.length - 2.0 * joint.length) / elements, joint.length / JOINT_ELEMENTS);
     }
     let pipe = BeamSection::pipe(
         section.outer_diameter,
@@ -36,4 +48,16 @@ pub(super) fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
     let spread = (4.0 * pipe.bending_stiffness() / scenario.contact.stiffness_of_a_metre()).powf(0.25);
     let target = spread / ELEMENTS_A_SPREAD;
     (target, target)
+}
+
+fn is_far(scenario: &Scenario, [top, bottom]: [f64; 2]) -> bool {
+    let sections = scenario.string.sections.iter();
+    let bit: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
+    // A node that is chosen by its number says nothing of a depth.
+    let recorded = scenario.recording.nodes.iter().filter_map(|choice| match choice {
+        NodeChoice::Depth(depth) => Some(*depth),
+        NodeChoice::Node(_) => None,
+    });
+    let is_far_from = |depth: f64| depth < top - FAR_FROM_RECORDED || depth > bottom + FAR_FROM_RECORDED;
+    bit - bottom > FAR_FROM_BIT && recorded.into_iter().all(is_far_from)
 }

@@ -59,11 +59,11 @@ pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshErr
         {
             return Err(MeshError::NoRoomForToolJoints { section: index });
         }
-        let targets = targets(section, scenario);
         for piece in 0..section.count {
             // A multiple of the length, not a running sum: depths carry no accumulated rounding.
             let top = section_top + f64::from(piece) * section.length;
             let bottom = section_top + f64::from(piece + 1) * section.length;
+            let targets = targets(section, scenario, [top, bottom]);
             push_piece(&mut stretches, &scenario.string, section, targets, [top, bottom]);
         }
         section_top += f64::from(section.count) * section.length;
@@ -74,10 +74,10 @@ pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshErr
     Ok(stretches)
 }
 
-/// Target element lengths \[m\] of a section's bodies and tool joints.
-fn targets(section: &Section, scenario: &Scenario) -> (f64, f64) {
+/// Target element lengths \[m\] of body and tool joints of a piece of a section between two depths.
+fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -> (f64, f64) {
     let scaled = |factor: f64| {
-        let (body, joint) = auto::targets(section, scenario);
+        let (body, joint) = auto::targets(section, scenario, piece);
         (factor * body, factor * joint)
     };
     match scenario.written_out_mesh() {

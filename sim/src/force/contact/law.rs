@@ -263,8 +263,8 @@ impl ContactParameters<f64> {
     }
 
     /// The law with a share of its friction, at rest and in motion.
-    #[must_use]
-    pub fn with_friction_share(self, share: f64) -> Self {
+    #[cfg(test)]
+    pub(super) fn with_friction_share(self, share: f64) -> Self {
         Self {
             tangential_share: share * self.tangential_share,
             torque_share: share * self.torque_share,
@@ -280,11 +280,6 @@ impl ContactParameters<f64> {
             StartFriction::BreakAway => rotation_speed.signum() * self.static_friction,
             StartFriction::Sliding => self.friction_coefficient(rotation_speed * node.contact_radius),
         }
-    }
-
-    /// The friction of nodes at rest.
-    pub(super) fn at_rest(&self) -> StartFriction {
-        self.at_rest
     }
 
     /// The same law in every lane.

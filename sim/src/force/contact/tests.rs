@@ -1655,19 +1655,12 @@ fn elements_of_a_wall_at_nodes_are_shared_between_nodes_of_their_clearance() {
 }
 
 #[test]
-fn a_wall_keeps_its_friction_at_rest_under_another_law() {
+fn friction_of_a_wall_at_rest_is_static_or_that_of_sliding() {
     let wall = wall(&ActiveEffects::ALL);
     let mu = |wall: &Wall| wall.law().friction_at_rest(&NODE, 0.5);
     assert_eq!(mu(&wall), BASE.static_friction);
     let sliding = wall.with_friction_at_rest(StartFriction::Sliding);
     assert_eq!(mu(&sliding), wall.law().friction_coefficient(0.5 * NODE.contact_radius));
-    let rougher = ContactLaw { static_friction: 0.6, dynamic_friction: 0.4, ..BASE };
-    let under = |wall: &Wall| wall.with_law(&rougher, &ActiveEffects::ALL);
-    assert_eq!(mu(&under(&wall)), 0.6);
-    assert_eq!(mu(&under(&sliding)), parameters(&rougher).friction_coefficient(0.5 * NODE.contact_radius));
-    let share = wall.with_friction_share(0.25);
-    assert_eq!(share.law(), &wall.law().with_friction_share(0.25));
-    assert_ne!(share.law(), wall.law());
 }
 
 /// Nodal values of a bent element of a helix at `radius` \[m\], of which both ends are `angle` \[rad\] from its middle.

@@ -68,21 +68,9 @@ impl Wall {
         Self { law: self.law, sites, segments: Vec::new() }
     }
 
-    /// The same contact sites with another law, but the same kind of friction at rest.
-    pub fn with_law(&self, law: &ContactLaw, effects: &ActiveEffects) -> Self {
-        let law = ContactParameters::new(law, effects).with_friction_at_rest(self.law.at_rest());
-        Self { law, ..self.clone() }
-    }
-
     /// The same wall with another friction of nodes at rest.
     #[must_use]
     pub fn with_friction_at_rest(&self, at_rest: StartFriction) -> Self {
         Self { law: self.law.with_friction_at_rest(at_rest), ..self.clone() }
-    }
-
-    /// The same wall with a share of its friction.
-    #[must_use]
-    pub fn with_friction_share(&self, share: f64) -> Self {
-        Self { law: self.law.with_friction_share(share), ..self.clone() }
     }
 }

@@ -1,9 +1,9 @@
-//! Continuation: the path of equilibria from the unloaded string to the loaded one, or from a wall without friction to one with it.
+//! Continuation: the path of equilibria from the unloaded string to the loaded one, or from a wall at the nodes to one along the elements.
 //!
-//! Either path begins at a known equilibrium: at rest on the centre line, or on the frictionless wall.
+//! Either path begins at a known equilibrium: at rest on the centre line, or on the wall at the nodes.
 
 use super::newton::{self, NewtonOutcome, linearise, tributary_lengths};
-use super::path::{self, Growth, Point, add};
+use super::path::{self, Growth, Point};
 use crate::force::contact::Wall;
 use crate::math::dof::{DOFS, U, V};
 use crate::math::linalg::BlockTridiagonal;
@@ -28,16 +28,6 @@ pub(super) fn follow(
     Some(outcome)
 }
 
-/// Follows the equilibria under `load` as the friction of the wall grows. The path begins at `displacement`, the equilibrium on
-/// [a wall without friction](frictionless), and moves it to the one with friction; `None` if the path does not reach it.
-pub(super) fn with_growing_friction(
-    model: &Model,
-    load: &[[f64; DOFS]],
-    displacement: &mut NodalVector,
-) -> Option<NewtonOutcome> {
-    path::follow(model, &Friction { model, load, none: frictionless(model) }, displacement)
-}
-
 /// Follows the equilibria under `load` as the wall moves from the nodes along the elements. The path begins at `displacement`, the equilibrium on the
 /// [wall at the nodes](Wall::at_nodes), and moves it to the one along the elements; `None` if the path does not reach it.
 pub(super) fn along_the_elements(
@@ -46,11 +36,6 @@ pub(super) fn along_the_elements(
     displacement: &mut NodalVector,
 ) -> Option<NewtonOutcome> {
     path::follow(model, &Spreading { model, load, at_nodes: model.wall.at_nodes() }, displacement)
-}
-
-/// The model's wall without friction.
-pub(super) fn frictionless(model: &Model) -> Wall {
-    model.wall.with_friction_share(0.0)
 }
 
 /// The loads grow, while a spring to the centre line fades.
@@ -82,29 +67,6 @@ impl Growth for Loads<'_> {
                 (residual[node][dof], slope[node][dof]) = (0.0, 0.0);
             }
         }
-        Some((residual, tangent, slope))
-    }
-
-    fn arrive(&self, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
-        newton::finish(self.model, self.load, displacement)
-    }
-}
-
-/// The friction of the wall grows.
-struct Friction<'a> {
-    model: &'a Model,
-    load: &'a [[f64; DOFS]],
-    /// The wall without.
-    none: Wall,
-}
-
-impl Growth for Friction<'_> {
-    fn linearise(&self, at: &Point) -> Option<(NodalVector, BlockTridiagonal, NodalVector)> {
-        let on = |wall: &Wall| linearise(self.model, wall, self.load, &at.displacement);
-        let (residual, tangent) = on(&self.model.wall.with_friction_share(at.share));
-        // Friction is in proportion to its share.
-        let (mut slope, (without, _)) = (on(&self.model.wall).0, on(&self.none));
-        add(&mut slope, -1.0, &without);
         Some((residual, tangent, slope))
     }
 

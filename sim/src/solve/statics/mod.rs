@@ -1,6 +1,6 @@
 //! The quasi-static equilibrium of the string on its wall, and the mud around it.
 //!
-//! Equation (35) by Newton's method on the exact tangent, made robust by a pseudo-transient shift, iterated
+//! Equation (35) by Newton's method on the exact tangent, with steps that are limited at each node, iterated
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
 mod buckling;
@@ -16,12 +16,12 @@ mod touch;
 
 pub use buckling::buckling_ratios;
 pub use error::StaticsError;
-pub use newton::NewtonSettings;
 pub use overload::Overload;
 pub(crate) use overload::negative_eigenvalues;
 
-use drillsweep_scenario::{ContactLaw, StartFriction};
+use drillsweep_scenario::StartFriction;
 use hydraulics::{Sections, drag, node_pressures};
+use newton::Start;
 use touch::{contact_along, contact_at};
 
 use crate::force::contact::Wall;
@@ -35,20 +35,9 @@ const HYDRAULIC_PASSES: usize = 30;
 /// Change of an eccentricity at which string and mud have converged: with three digits gained in a pass, the remainder is rounding.
 const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
 
-/// Factors by which the search's spring is stiffened and its steps are shortened, one pair after the other, if it does not converge: shorter steps
-/// alone, then also a spring thirty times as stiff. They are orders of magnitude, without a derivation.
-const FALLBACK_STEPS: [(f64, f64); 2] = [(1.0, 0.1), (30.0, 0.1)];
-
 /// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other until it reaches the loads: none,
-/// then the one that the search begins with, which holds the string until its loads stretch it, and one thirty times as stiff.
-const PATH_SPRINGS: [f64; 3] = [0.0, 3e4, 1e6];
-
-/// Stiffness of softer walls on the way to the scenario's own, a decade apart. Each lets the string penetrate ten times as deep as the next one,
-/// and Newton's method proceeds from one to the next.
-const SOFT_WALLS: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
-
-/// Iterations of a search with steps a tenth as long.
-const FALLBACK_ITERATIONS: usize = 1000;
+/// then the one that the search begins with, which holds the string until its loads stretch it.
+const PATH_SPRINGS: [f64; 2] = [0.0, 3e4];
 
 /// The string at rest: displacements, internal forces, contacts, flow.
 #[derive(Debug, Clone)]
@@ -88,30 +77,25 @@ impl Equilibrium {
     /// # Errors
     /// Newton's method or the iteration with the hydraulics does not converge.
     pub fn find(model: &Model) -> Result<Self, StaticsError> {
-        Self::find_from(model, vec![[0.0; DOFS]; model.node_count()], &NewtonSettings::default())
+        Self::find_from(model, vec![[0.0; DOFS]; model.node_count()])
     }
 
     /// The equilibrium searched from given displacements.
     ///
     /// # Errors
     /// As [`Equilibrium::find`].
-    pub fn find_from(
-        model: &Model,
-        displacement: NodalVector,
-        settings: &NewtonSettings,
-    ) -> Result<Self, StaticsError> {
+    pub fn find_from(model: &Model, displacement: NodalVector) -> Result<Self, StaticsError> {
         let sections = Sections::new(model)?;
         let concentric = vec![0.0; model.elements.len()];
-        let mut settings = settings.clone();
+        let mut start = Start::Anywhere;
         let found = Self::in_passes(
             model,
             &model.wall,
             &sections,
             (displacement, concentric),
             |load, displacement| {
-                let outcome = with_fallbacks(model, load, displacement, &settings)?;
-                // Later passes start next to the solution: plain Newton from there.
-                settings.initial_shift = 0.0;
+                let outcome = with_fallbacks(model, load, displacement, start)?;
+                start = Start::NextToSolution;
                 Ok(outcome)
             },
         );
@@ -147,17 +131,12 @@ impl Equilibrium {
         }
         let wall = model.wall.with_friction_at_rest(friction);
         let sections = Sections::new(model)?;
-        let plain = NewtonSettings {
-            initial_shift: 0.0,
-            iteration_limit: newton::LAST_ITERATIONS,
-            ..NewtonSettings::default()
-        };
         let start = (self.displacement.clone(), eccentricities(model, &self.displacement));
         Self::in_passes(model, &wall, &sections, start, |load, displacement| {
             let before = displacement.clone();
-            newton::solve(model, &wall, load, displacement, &plain).or_else(|_| {
+            newton::solve(model, &wall, load, displacement, Start::NextToSolution).or_else(|_| {
                 *displacement = before;
-                newton::solve(model, &wall, load, displacement, &NewtonSettings::default())
+                newton::solve(model, &wall, load, displacement, Start::Anywhere)
             })
         })
     }
@@ -253,54 +232,24 @@ fn eccentricities(model: &Model, displacement: &[[f64; DOFS]]) -> Vec<f64> {
     (0..model.elements.len()).map(|element| model.eccentricity(element, displacement)).collect()
 }
 
-/// Newton's method with fallbacks from the same start if it does not converge: against a soft wall that is stiffened in stages, then with
-/// shorter steps held by a stiffer spring; at last along the path of equilibria from the unloaded string, by relaxation, along the path from a wall
-/// without friction, and by plain steps of any length.
+/// Newton's method. If it does not converge: relaxation from the same start, contact along elements from contact at the nodes, and the path of
+/// equilibria from the unloaded string.
 fn with_fallbacks(
     model: &Model,
     load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
-    settings: &NewtonSettings,
+    start: Start,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
-    let start = displacement.clone();
-    let failure = match newton::solve(model, &model.wall, load, displacement, settings) {
+    let before = displacement.clone();
+    let failure = match newton::solve(model, &model.wall, load, displacement, start) {
         Err(failure) => failure,
         converged => return converged,
     };
-    if let Some(outcome) = by_way_of_the_nodes(model, load, &start) {
-        let (found, outcome) = outcome;
-        *displacement = found;
-        return Ok(outcome);
-    }
-    displacement.clone_from(&start);
-    if let Ok(outcome) = against_a_hardening_wall(model, load, displacement) {
-        return Ok(outcome);
-    }
-    for (stiffer, shorter) in FALLBACK_STEPS {
-        displacement.clone_from(&start);
-        let defaults = NewtonSettings::default();
-        let slow = NewtonSettings {
-            initial_shift: stiffer * defaults.initial_shift,
-            largest_step: shorter * defaults.largest_step,
-            iteration_limit: FALLBACK_ITERATIONS,
-            ..defaults
-        };
-        if let Ok(outcome) = newton::solve(model, &model.wall, load, displacement, &slow) {
-            return Ok(outcome);
-        }
-    }
-    displacement.clone_from(&start);
-    let found = PATH_SPRINGS
-        .iter()
-        .find_map(|&spring| continuation::follow(model, load, displacement, spring))
-        .or_else(|| relaxation::settle(model, load, displacement))
+    displacement.clone_from(&before);
+    let found = relaxation::settle(model, load, displacement)
+        .or_else(|| by_way_of_the_nodes(model, load, &before, displacement))
         .or_else(|| {
-            displacement.clone_from(&start);
-            with_growing_friction(model, load, displacement)
-        })
-        .or_else(|| {
-            displacement.clone_from(&start);
-            newton::finish(model, load, displacement)
+            PATH_SPRINGS.iter().find_map(|&spring| continuation::follow(model, load, displacement, spring))
         });
     if let Some(outcome) = found {
         return Ok(outcome);
@@ -314,60 +263,19 @@ fn with_fallbacks(
     })
 }
 
-/// The path of equilibria as friction grows from zero; `None` if the equilibrium without friction is not found, or the wall has no friction.
-fn with_growing_friction(
-    model: &Model,
-    load: &[[f64; DOFS]],
-    displacement: &mut NodalVector,
-) -> Option<newton::NewtonOutcome> {
-    let has_friction = model.effects.contact && model.effects.friction;
-    if !has_friction || model.scenario.contact.static_friction == 0.0 {
-        return None;
-    }
-    let frictionless = continuation::frictionless(model);
-    let start = displacement.clone();
-    let settings = NewtonSettings::default();
-    let (_, shorter) = FALLBACK_STEPS[0];
-    let slow = NewtonSettings {
-        largest_step: shorter * settings.largest_step,
-        iteration_limit: FALLBACK_ITERATIONS,
-        ..settings.clone()
-    };
-    let is_found = [settings, slow].iter().any(|settings| {
-        displacement.clone_from(&start);
-        newton::solve(model, &frictionless, load, displacement, settings).is_ok()
-    });
-    if is_found { continuation::with_growing_friction(model, load, displacement) } else { None }
-}
-
-/// The equilibrium on a wall along the elements, from the one on the wall at the nodes; `None` if the wall is at the nodes anyway, or either is not
-/// found.
+/// Moves `displacement` to the equilibrium on a wall along the elements, from the one on the wall at the nodes, searched from `start`; `None` if
+/// the wall is at the nodes anyway, or either is not found.
 fn by_way_of_the_nodes(
     model: &Model,
     load: &[[f64; DOFS]],
     start: &NodalVector,
-) -> Option<(NodalVector, newton::NewtonOutcome)> {
+    displacement: &mut NodalVector,
+) -> Option<newton::NewtonOutcome> {
     if model.wall.segments().is_empty() {
         return None;
     }
     let at_nodes = Model { wall: model.wall.at_nodes(), ..model.clone() };
-    let mut displacement = start.clone();
-    with_fallbacks(&at_nodes, load, &mut displacement, &NewtonSettings::default()).ok()?;
-    let outcome = continuation::along_the_elements(model, load, &mut displacement)?;
-    Some((displacement, outcome))
-}
-
-/// Equilibria against walls of growing stiffness, each from the one before, the last against the scenario's own.
-fn against_a_hardening_wall(
-    model: &Model,
-    load: &[[f64; DOFS]],
-    displacement: &mut NodalVector,
-) -> Result<newton::NewtonOutcome, StaticsError> {
-    let own = &model.scenario.contact;
-    for share in SOFT_WALLS {
-        let law = ContactLaw { stiffness: share * own.stiffness, ..*own };
-        let soft = model.wall.with_law(&law, &model.effects);
-        newton::solve(model, &soft, load, displacement, &NewtonSettings::default())?;
-    }
-    newton::solve(model, &model.wall, load, displacement, &NewtonSettings::default())
+    displacement.clone_from(start);
+    with_fallbacks(&at_nodes, load, displacement, Start::Anywhere).ok()?;
+    continuation::along_the_elements(model, load, displacement)
 }

@@ -1,55 +1,59 @@
-//! Newton's method with a pseudo-transient shift for the nonlinear equilibrium.
+//! Newton's method for the nonlinear equilibrium, with steps that are limited at each node by itself.
 
 use super::error::StaticsError;
 use super::touch::{contact_along, contact_at};
-use crate::force::contact::{Wall, planes};
+use crate::force::contact::Wall;
 use crate::force::nodal::Dependence;
-use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
+use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V, W};
 use crate::math::linalg::{Block, BlockTridiagonal, Factor};
 use crate::solve::model::{Model, NodalVector, add_element_matrix, add_element_vector, element_values};
 use crate::string::beam::{ElementMatrix, ElementVector};
 
-/// Unbalanced force, relative to the largest nodal load, below which the shift is dropped: the iterate is then
-/// inside the region where plain Newton converges quadratically.
-const PLAIN_NEWTON_BELOW: f64 = 1e-6;
+/// Lateral spring per length of string \[N/m2\] that holds an iterate at the last one at first. Under weight on bit a long string is buckled without
+/// its wall, so that plain Newton from the centre line diverges. A beam on a spring k buckles under 2 sqrt(k E I) (Hetenyi 1946): with 3e4 N/m2, a
+/// drillpipe of 1.3 MN m2 holds 390 kN, which exceeds weights on bit.
+const FIRST_SPRING: f64 = 3e4;
 
-/// Unbalanced force, relative to the largest nodal load, above which plain Newton counts as lost: it began [below a millionth of that
-/// load](PLAIN_NEWTON_BELOW), so that a step which leaves more than the loads themselves has left the region where it converges.
-const SHIFT_AGAIN_ABOVE: f64 = 10.0;
+/// Factor by which the spring of a node fades when its whole step is taken, and by whose inverse it grows when the step is limited.
+const FADE: f64 = 0.5;
 
-/// Largest factor by which the shift follows the residual in one iteration, down or up. Otherwise it is in proportion to the residual
-/// (switched evolution relaxation, Mulder and van Leer 1985; Kelley and Keyes 1998, who prove that it converges).
-const SHIFT_CHANGE: f64 = 10.0;
+/// Largest spring \[N/m2\], which is of the order of a wall's own stiffness per metre.
+const LARGEST_SPRING: f64 = 1e7;
+
+/// Spring \[N/m2\] that a limited node has at least, and below which a fading spring is released.
+const SPRINGS: [f64; 2] = [30.0, 1e-3];
+
+/// Largest lateral step of a node in an iteration \[m\]. It is less than a collar's clearance (28 mm in the base case), so that no iteration throws
+/// a node from one side of the hole into the other.
+const LARGEST_STEP: f64 = 0.02;
+
+/// Lateral step \[m\] to which a node is always entitled. If all steps are shorter, springs are released: plain Newton ends the search.
+const SMALLEST_LIMIT: f64 = 1e-4;
+
+/// Factor by which the limit of a node shrinks if its step reverses the last one, and grows if the limited step goes on in the same direction.
+const SHRINK: f64 = 0.5;
+const GROW: f64 = 4.0;
+
+/// Iterations after which the search has failed.
+const ITERATIONS: usize = 200;
 
 /// Iterations of plain Newton next to an equilibrium.
 pub(super) const LAST_ITERATIONS: usize = 40;
 
-/// Last step of plain Newton next to an equilibrium, in the largest displacement. With metres of sag, rounding leaves more than the tolerance of
-/// strings that lie in their hole.
-const ARRIVED: f64 = 1e-9;
+/// Last Newton step at which the search has converged \[m, rad\]: 1e-11 is 1e-4 N of contact force at 1e7 N/m, and convergence is quadratic
+/// there, so that the next step would be rounding.
+const TOLERANCE: f64 = 1e-11;
 
-/// Settings of the search.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewtonSettings {
-    /// Initial lateral spring per length of string that holds each iterate at the last one \[N/m2\]. Under
-    /// weight on bit a long string is buckled without its wall, so that plain Newton from the centre line
-    /// diverges; the spring fades with the residual. A beam on a spring k buckles under 2 sqrt(k E I) (Hetenyi 1946): with 3e4 N/m2, the
-    /// default, a drillpipe of 1.3 MN m2 holds 390 kN, which exceeds weights on bit.
-    pub initial_shift: f64,
-    /// Largest lateral displacement of one iteration \[m\]. The default, 0.02, is less than a collar's clearance (28 mm in the base case), so
-    /// that no iteration throws a node from one side of the hole into the other.
-    pub largest_step: f64,
-    /// Iterations after which the search has failed.
-    pub iteration_limit: usize,
-    /// Last Newton step at which the search has converged \[m, rad\]. The default, 1e-11, is 1e-4 N of contact force at 1e7 N/m; convergence
-    /// is quadratic there, so that the next step would be rounding.
-    pub tolerance: f64,
-}
+/// The same in the largest displacement: with metres of stretch or sag, rounding leaves more than [`TOLERANCE`].
+const RELATIVE_TOLERANCE: f64 = 1e-9;
 
-impl Default for NewtonSettings {
-    fn default() -> Self {
-        Self { initial_shift: 3e4, largest_step: 0.02, iteration_limit: 400, tolerance: 1e-11 }
-    }
+/// Beginning of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Start {
+    /// Anywhere: springs hold the string at each iterate.
+    Anywhere,
+    /// Next to the solution: nothing holds it but the limits of the steps.
+    NextToSolution,
 }
 
 /// Outcome of a search.
@@ -59,53 +63,46 @@ pub(super) struct NewtonOutcome {
 }
 
 /// Moves `displacement` to the equilibrium under `load`, on `wall`.
+///
+/// The only strong nonlinearity is contact, which acts node by node: stretch is linear, and tension follows from the first step. So
+/// axial and torsional steps are always taken in full, and the lateral step of a node has a limit and a spring to the last iterate of its own, as circuit
+/// simulators limit the voltage of each junction (Nagel 1975). A node that leaves and meets the wall in turn shortens its own steps and holds
+/// nobody else; what its limit leaves unbalanced along the beam is linear, and the next step removes it.
 pub(super) fn solve(
     model: &Model,
     wall: &Wall,
     load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
-    settings: &NewtonSettings,
+    start: Start,
 ) -> Result<NewtonOutcome, StaticsError> {
     let tributary = tributary_lengths(model);
-    let mut shift = settings.initial_shift;
+    let spring = if start == Start::Anywhere { FIRST_SPRING } else { 0.0 };
+    let mut nodes = vec![NodeLimit { largest: LARGEST_STEP, spring, last: [0.0; 2] }; model.node_count()];
     let (mut residual, mut tangent) = linearise(model, wall, load, displacement);
-    let mut size = largest(&residual);
-    let scale_of_load = largest(load);
-    for iteration in 1..=settings.iteration_limit {
-        for (block, length) in tangent.diagonal.iter_mut().zip(&tributary) {
-            block[(U, U)] += shift * length;
-            block[(V, V)] += shift * length;
-        }
-        if !wall.segments().is_empty() {
-            hold_rotations(model, shift, &mut tangent);
-        }
+    for iteration in 1..=ITERATIONS {
+        hold(model, wall, &nodes, &tributary, &mut tangent);
         let mut step = residual;
         Factor::new(&tangent)?.solve_in_place(&mut step);
-        let lateral = largest_deflection(wall, &step);
-        let scale = (settings.largest_step / lateral).min(1.0);
-        let mut longest: f64 = 0.0;
-        for (node, step) in displacement.iter_mut().zip(&step) {
-            for (value, step) in node.iter_mut().zip(step) {
-                *value += scale * step;
+        let (mut longest, mut lateral) = (0.0_f64, 0.0_f64);
+        for ((at, node), step) in displacement.iter_mut().zip(&mut nodes).zip(&step) {
+            let share = node.share_of([step[U], step[V]]);
+            for (dof, (value, step)) in at.iter_mut().zip(step).enumerate() {
+                *value += if matches!(dof, W | THETA_Z) { *step } else { share * step };
                 longest = longest.max(step.abs());
             }
+            lateral = lateral.max(step[U].hypot(step[V]));
+        }
+        if lateral < SMALLEST_LIMIT {
+            nodes.iter_mut().for_each(|node| node.spring = 0.0);
         }
         (residual, tangent) = linearise(model, wall, load, displacement);
-        let new_size = largest(&residual);
-        if !new_size.is_finite() {
+        let unbalanced = largest(&residual);
+        if !unbalanced.is_finite() {
             break;
         }
-        if longest <= settings.tolerance && shift == 0.0 {
-            return Ok(NewtonOutcome { iterations: iteration, residual: new_size });
+        if longest <= last_step(displacement) && nodes.iter().all(|node| node.spring == 0.0) {
+            return Ok(NewtonOutcome { iterations: iteration, residual: unbalanced });
         }
-        shift = if new_size <= PLAIN_NEWTON_BELOW * scale_of_load {
-            0.0
-        } else if shift == 0.0 && new_size > SHIFT_AGAIN_ABOVE * scale_of_load {
-            NewtonSettings::default().initial_shift
-        } else {
-            shift * (new_size / size).clamp(1.0 / SHIFT_CHANGE, SHIFT_CHANGE)
-        };
-        size = new_size;
     }
     let node = residual
         .iter()
@@ -113,18 +110,61 @@ pub(super) fn solve(
         .max_by(|a, b| force(a.1).total_cmp(&force(b.1)))
         .map_or(0, |(node, _)| node + 1);
     Err(StaticsError::NotConverged {
-        iterations: settings.iteration_limit,
+        iterations: ITERATIONS,
         residual: largest(&residual),
         node,
         overload: None,
     })
 }
 
-/// Adds the rotational part of a lateral spring of `shift` \[N/m2\] along the elements, 2 l^3/105 of each end: between nodes, a wall along the
-/// elements pushes by rotations alone.
-fn hold_rotations(model: &Model, shift: f64, tangent: &mut BlockTridiagonal) {
+/// Limit of the lateral steps of a node.
+#[derive(Debug, Clone)]
+struct NodeLimit {
+    /// Longest step \[m\].
+    largest: f64,
+    /// Spring to the last iterate, per length \[N/m2\].
+    spring: f64,
+    /// Last step that was taken \[m\].
+    last: [f64; 2],
+}
+
+impl NodeLimit {
+    /// Share of a step that the node takes; limit and spring follow from it.
+    fn share_of(&mut self, step: [f64; 2]) -> f64 {
+        let size = step[0].hypot(step[1]);
+        let share = if size > self.largest { self.largest / size } else { 1.0 };
+        let taken = share * size;
+        let is_reversed = step[0] * self.last[0] + step[1] * self.last[1] < 0.0;
+        if is_reversed && taken > 0.5 * self.last[0].hypot(self.last[1]) {
+            self.largest = (SHRINK * taken).max(SMALLEST_LIMIT);
+        } else if !is_reversed && share < 1.0 {
+            self.largest = (GROW * self.largest).min(LARGEST_STEP);
+        }
+        let [least, released] = SPRINGS;
+        self.spring = if share < 1.0 {
+            (self.spring / FADE).clamp(least, LARGEST_SPRING)
+        } else if FADE * self.spring < released {
+            0.0
+        } else {
+            FADE * self.spring
+        };
+        self.last = step.map(|step| share * step);
+        share
+    }
+}
+
+/// Adds the springs of the nodes to a tangent. Between nodes, a wall along the elements pushes by rotations alone: there, the rotational part of a
+/// lateral spring along the element, 2 l^3/105 of each end, is added too.
+fn hold(model: &Model, wall: &Wall, nodes: &[NodeLimit], tributary: &[f64], tangent: &mut BlockTridiagonal) {
+    for ((block, node), length) in tangent.diagonal.iter_mut().zip(nodes).zip(tributary) {
+        block[(U, U)] += node.spring * length;
+        block[(V, V)] += node.spring * length;
+    }
+    if wall.segments().is_empty() {
+        return;
+    }
     for (e, element) in model.elements.iter().enumerate() {
-        let spring = shift * 2.0 / 105.0 * element.chord.length.powi(3);
+        let spring = nodes[e].spring.max(nodes[e + 1].spring) * 2.0 / 105.0 * element.chord.length.powi(3);
         for node in [e, e + 1] {
             for dof in [THETA_X, THETA_Y] {
                 tangent.diagonal[node][(dof, dof)] += spring;
@@ -133,36 +173,34 @@ fn hold_rotations(model: &Model, shift: f64, tangent: &mut BlockTridiagonal) {
     }
 }
 
-/// The largest lateral displacement of a step \[m\]: of nodes, and of the middles of elements if the wall acts along them.
-fn largest_deflection(wall: &Wall, step: &[[f64; DOFS]]) -> f64 {
-    let of_nodes = step.iter().fold(0.0_f64, |most, node| most.max(node[U].hypot(node[V])));
-    let along = wall.segments().iter().enumerate().map(|(e, segment)| {
-        let middle = planes(&element_values(step, e))
-            .map(|[a, turn_a, b, turn_b]| 0.5 * (a + b) + 0.125 * segment.length * (turn_a - turn_b));
-        middle[0].hypot(middle[1])
-    });
-    along.fold(of_nodes, f64::max)
-}
-
 /// Plain Newton from `displacement` next to an equilibrium under `load`, without a limit on the step.
 pub(super) fn finish(
     model: &Model,
     load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
 ) -> Option<NewtonOutcome> {
-    let plain = NewtonSettings {
-        initial_shift: 0.0,
-        largest_step: f64::INFINITY,
-        iteration_limit: LAST_ITERATIONS,
-        tolerance: last_step(displacement),
-    };
-    solve(model, &model.wall, load, displacement, &plain).ok()
+    let (mut residual, mut tangent) = linearise(model, &model.wall, load, displacement);
+    for iteration in 1..=LAST_ITERATIONS {
+        let mut step = residual;
+        Factor::new(&tangent).ok()?.solve_in_place(&mut step);
+        for (value, step) in displacement.iter_mut().flatten().zip(step.iter().flatten()) {
+            *value += step;
+        }
+        (residual, tangent) = linearise(model, &model.wall, load, displacement);
+        let unbalanced = largest(&residual);
+        if !unbalanced.is_finite() {
+            return None;
+        }
+        if largest(&step) <= last_step(displacement) {
+            return Some(NewtonOutcome { iterations: iteration, residual: unbalanced });
+        }
+    }
+    None
 }
 
-/// The last step of plain Newton next to an equilibrium at `displacement` \[m, rad\].
+/// The last step of Newton's method next to an equilibrium at `displacement` \[m, rad\].
 pub(super) fn last_step(displacement: &[[f64; DOFS]]) -> f64 {
-    let largest = displacement.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
-    NewtonSettings::default().tolerance.max(ARRIVED * largest)
+    TOLERANCE.max(RELATIVE_TOLERANCE * largest(displacement))
 }
 
 /// Unbalanced forces and the exact tangent stiffness, held degrees of freedom made trivial.

@@ -1,0 +1,77 @@
+//! The string of a whole well, 3,438 m with 336 joints of drillpipe.
+
+use drillsweep_scenario::{ElementLengths, Mesh, Scenario, preset};
+use drillsweep_sim::math::dof::{U, V};
+use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::statics::Equilibrium;
+
+fn well() -> Scenario {
+    preset("wells/volve-f12").expect("it ships with the program")
+}
+
+/// A string of another mesh in the same scenario.
+fn on(mesh: Mesh) -> (Model, Equilibrium) {
+    let model = Model::new(&Scenario { mesh, ..well() }).expect("valid");
+    let equilibrium = Equilibrium::find(&model).expect("rests");
+    (model, equilibrium)
+}
+
+#[test]
+fn far_from_the_bit_two_elements_a_joint_carry_what_eight_carry() {
+    // The mesh of `auto` near the bit, all along the string, and twice as fine.
+    let everywhere = |share: f64| {
+        Mesh::Lengths(ElementLengths {
+            drillpipe: share * 9.08 / 8.0,
+            tool_joint: share * 0.6,
+            collar: share * 0.5,
+            stabilizer: share * 0.5,
+            bit: share * 0.3,
+        })
+    };
+    let (graded, fine, finer) = (on(Mesh::auto(1.0)), on(everywhere(1.0)), on(everywhere(0.5)));
+    assert!(2 * graded.0.node_count() < fine.0.node_count(), "{} nodes", graded.0.node_count());
+    // What the graded mesh leaves out is no more than what the fine mesh itself is from its limit, by its halving, or a thousandth.
+    let values = |(_, equilibrium): &(Model, Equilibrium)| [equilibrium.tension[0], equilibrium.torque[0]];
+    for ((graded, fine), finer) in values(&graded).into_iter().zip(values(&fine)).zip(values(&finer)) {
+        let allowed = (fine - finer).abs().max(1e-3 * finer.abs());
+        assert!((graded - finer).abs() < 2.0 * allowed, "{graded} of {fine} and {finer}");
+    }
+    let radius = 0.5 * well().well.hole_diameter;
+    for depth in [3437.7, 3428.0, 3410.0, 3390.0, 3338.0] {
+        let [graded, finer] = [&graded, &finer].map(|string| position(string, depth));
+        let distance = (graded[0] - finer[0]).hypot(graded[1] - finer[1]);
+        assert!(distance < 0.01 * radius, "{distance} m apart at {depth} m");
+    }
+}
+
+/// Position \[m\] at a depth, linear between nodes.
+fn position((model, equilibrium): &(Model, Equilibrium), depth: f64) -> [f64; 2] {
+    let nodes = &model.mesh.nodes;
+    let below = nodes.partition_point(|node| node.measured_depth < depth).clamp(1, nodes.len() - 1);
+    let (top, bottom) = (nodes[below - 1].measured_depth, nodes[below].measured_depth);
+    let share = (depth - top) / (bottom - top);
+    let at = |node: usize, dof: usize| equilibrium.displacement[node][dof];
+    [U, V].map(|dof| at(below - 1, dof) + share * (at(below, dof) - at(below - 1, dof)))
+}
+
+#[test]
+fn a_whole_string_off_bottom_hangs_and_turns_as_a_soft_string_does() {
+    // A soft string by minimum curvature in steps of 1 m, without flow, by two codes of other authors that agree to 0.05 % (torque 0.6 %): joints of the
+    // heavy-weight pipe alone, and all joints.
+    for (has_joints, hook_load, torque) in [(false, 746.91e3, 10.89e3), (true, 886.0e3, 12.3e3)] {
+        let mut scenario = well();
+        if !has_joints {
+            scenario.string.sections[1].tool_joint = None;
+        }
+        scenario.operation.weight_on_bit = 0.0;
+        scenario.operation.torque_on_bit = 0.0;
+        scenario.contact.static_friction = 0.2;
+        if let Some(mud) = &mut scenario.mud {
+            mud.flow_rate = 0.0;
+        }
+        let equilibrium = Equilibrium::find(&Model::new(&scenario).expect("valid")).expect("rests");
+        // The string lies off the axis and bends: 0.2 % of the tension, and some per cent of the side force that turns it.
+        assert!((equilibrium.tension[0] / hook_load - 1.0).abs() < 5e-3, "{} N", equilibrium.tension[0]);
+        assert!((-equilibrium.torque[0] / torque - 1.0).abs() < 0.03, "{} N m", equilibrium.torque[0]);
+    }
+}

@@ -11,6 +11,7 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 const ARROWS: &[(&str, &[&str])] = &[
     ("drillsweep-quantity", &[]),
     ("drillsweep-scenario", &["drillsweep-quantity"]),
+    ("drillsweep-import", &["drillsweep-quantity", "drillsweep-scenario"]),
     ("drillsweep-sim", &["drillsweep-scenario"]),
     ("drillsweep-study", &["drillsweep-scenario", "drillsweep-sim"]),
     ("drillsweep-table", &["drillsweep-quantity"]),
@@ -66,6 +67,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "drillsweep-api",
             "drillsweep-chart",
+            "drillsweep-import",
             "drillsweep-quantity",
             "drillsweep-scenario",
             "drillsweep-server",
@@ -83,7 +85,8 @@ const CONFINED: &[(&str, &[&str])] = &[
     ("sqlx", &["drillsweep-store"]),
     ("object_store", &["drillsweep-store"]),
     ("parquet", &["drillsweep-table"]),
-    ("csv", &["drillsweep-table"]),
+    ("csv", &["drillsweep-import", "drillsweep-table"]),
+    ("calamine", &["drillsweep-import"]),
     ("axum", &["drillsweep-server"]),
     ("utoipa-axum", &["drillsweep-server"]),
     ("tower-http", &["drillsweep-server"]),

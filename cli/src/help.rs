@@ -45,6 +45,7 @@ const GROUPS: [Group; 4] = [
         "One point on this machine",
         &[
             ("scenario", "drillsweep scenario paper-200m > string.toml"),
+            ("import", "drillsweep import survey survey.xlsx > survey.toml"),
             ("plan", "drillsweep plan paper-200m --set mud.flow_rate=0.02"),
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),

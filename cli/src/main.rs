@@ -11,6 +11,7 @@ mod fetch;
 mod gc;
 mod health;
 mod help;
+mod import;
 mod migrate;
 mod modes;
 mod plan;
@@ -94,6 +95,8 @@ enum Command {
     Plan(plan::PlanArguments),
     /// Measure the cost of accuracy: methods, steps and meshes relative to a converged run.
     Cost(cost::CostArguments),
+    /// Read a survey from a file of another program, or fit a mud to viscometer readings, and print that part of a scenario.
+    Import(import::ImportArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
     /// List the scenarios that ship with the program, or print one.
@@ -216,6 +219,7 @@ fn run() -> anyhow::Result<()> {
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Import(arguments) => import::show(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),

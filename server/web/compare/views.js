@@ -1,5 +1,6 @@
 // Views of a comparison, by their names in the link.
 
+import { valueAtTime } from "../data/at-time.js";
 import { spectrumRange } from "../data/motion-requests.js";
 import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
@@ -11,6 +12,7 @@ import {
   spectrumTrace,
 } from "../draw/orbit.js";
 import { draw, laidOut } from "../draw/plots.js";
+import { timeDots } from "../draw/time-line.js";
 import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
@@ -191,6 +193,15 @@ async function drawOrbits(place, comparison) {
     traces: [holeTrace(one.clearance), traces[order]],
   }));
   const { traces: all, layout } = panelsInPlane(place, panels, orbitLayout(isZoomed, traces, clearance));
+  const dotsAt = (/** @type {number} */ time) =>
+    found.flatMap(([, { orbit }], order) => {
+      const [x, y] = [traces[order].x, traces[order].y].map((values) =>
+        valueAtTime(orbit.columns.time, values, time),
+      );
+      const axis = order ? order + 1 : "";
+      return x === null || y === null ? [] : [{ x, y, xaxis: `x${axis}`, yaxis: `y${axis}` }];
+    });
+  timeDots(place, comparison.time, dotsAt, comparison.drawing);
   return draw(place, all, { ...layout, shows: [comparison.node, isZoomed] }, comparison.signal);
 }
 

@@ -1,13 +1,14 @@
 // Overview of a point above its views: string over depth, orbit, spectrum with causes, and rotation speed of the bit.
 
 import { Problem } from "../data/api.js";
+import { valueAtTime } from "../data/at-time.js";
 import { causeOf, causeWords } from "../data/judgement.js";
 import { chosenWindow, nodeInLink, nodeTables, windowTables } from "../data/motion-requests.js";
 import { recordedAs } from "../data/statistics.js";
 import { partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { namedLines, seenDownhole, spectrumTrace } from "./orbit.js";
-import { LINES } from "./plots.js";
+import { inks, LINES } from "./plots.js";
 import { fill, h } from "../ui/dom.js";
 import { link } from "../ui/router.js";
 import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictures.js";
@@ -19,6 +20,7 @@ import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictur
  * @property {URLSearchParams} query of the link
  * @property {() => Promise<any>} diagnosis with causes of spectral lines
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {import("./time-cursor.js").TimeCursor} [time] at which histories are read; absent where no view below has it
  * @property {AbortSignal} signal
  */
 
@@ -51,20 +53,23 @@ export class Overview {
   #node;
   #window;
   #tiles;
+  #place;
+  /** Paints the pictures that have the time cursor anew. @type {Map<string, () => void>} */
+  #timed = new Map();
   element;
 
   /** @param {Shown} context @param {string[]} place of the point in links */
   constructor(context, place) {
     const { point, query } = context;
     this.#context = context;
+    this.#place = place;
     this.#node = overviewNode(point, query);
     this.#window = chosenWindow(point, query);
     const tile = (/** @type {string} */ name, /** @type {string} */ view, size = "") => {
       const [picture, caption] = [smallCanvas(name, size), h("span", { class: "small soft" })];
-      const to = link(place, { view, ...(this.#node ? { node: this.#node } : {}) });
       const element = h(
         "a",
-        { class: `tile ${size}`, href: to, hidden: true },
+        { class: `tile ${size}`, href: this.#to(view), "data-view": view, hidden: true },
         h("strong", {}, name),
         picture,
         caption,
@@ -87,6 +92,36 @@ export class Overview {
         Object.values(this.#tiles).map(({ element }) => element),
       ),
     );
+  }
+
+  /** @param {string} view @param {Record<string, string>} [choices] of the link @returns {string} link to a view of the node that is shown */
+  #to(view, choices = {}) {
+    return link(this.#place, { ...choices, view, ...(this.#node ? { node: this.#node } : {}) });
+  }
+
+  /** Takes choices of the link over into the links of the pictures. @param {Record<string, string>} choices */
+  follow(choices) {
+    for (const { element } of Object.values(this.#tiles))
+      element.setAttribute("href", this.#to(element.dataset.view ?? "", choices));
+  }
+
+  /** Paints a picture, and again when the time cursor moves, once a frame. @param {string} name @param {(time: number | null) => void} paint */
+  #paintTimed(name, paint) {
+    const { time, signal } = this.#context;
+    paint(time?.time ?? null);
+    if (!time) return;
+    const isNew = !this.#timed.size;
+    this.#timed.set(name, () => paint(time.time));
+    let isDue = false;
+    if (!isNew) return;
+    time.follow(() => {
+      if (isDue) return;
+      isDue = true;
+      requestAnimationFrame(() => {
+        isDue = false;
+        for (const again of this.#timed.values()) again();
+      });
+    }, signal);
   }
 
   /** Draws what the result has; a table that it lacks leaves its picture out. */
@@ -157,7 +192,13 @@ export class Overview {
     const size = point.summary[`orbit_radius_rms_${recordedAs(point.scenario, node, measured_depth)}`];
     const words = `At ${say("measured_depth", measured_depth)}, looking downhole, in ${unit("radius").symbol}${size ? `; ${say("radius", size, 3)} rms` : ""}.`;
     const [x, y] = [shown("radius", across), shown("radius", up)];
-    drawCurves(this.#show("orbit", words), [{ x, y, colour: LINES[0] }], { isEqual: true });
+    const picture = this.#show("orbit", words);
+    const orbit = { x, y, colour: LINES[0] };
+    this.#paintTimed("orbit", (time) => {
+      const place = time === null ? [null, null] : [x, y].map((one) => valueAtTime(columns.time, one, time));
+      const dot = { x: [place[0]], y: [place[1]], colour: inks().text, isDots: true };
+      drawCurves(picture, place.includes(null) ? [orbit] : [orbit, dot], { isEqual: true });
+    });
   }
 
   /** @param {any} spectrum table */
@@ -216,6 +257,7 @@ export class Overview {
     const words = `${say("rotation_speed", least, 3)} to ${say("rotation_speed", largest, 3)} over time in s; dashed: imposed, ${say("rotation_speed", imposed, 3)}.`;
     const curve = { x: columns.time, y: shown("rotation_speed", columns[speed]), colour: LINES[0] };
     const level = Number(shown("rotation_speed", [imposed])[0]);
-    drawCurves(this.#show("bit", words), [curve], { level });
+    const picture = this.#show("bit", words);
+    this.#paintTimed("bit", (time) => drawCurves(picture, [curve], { level, at: time ?? undefined }));
   }
 }

@@ -73,18 +73,19 @@ export function rangeOf(columns) {
  * Draws curves in a frame, with the numbers at its corners.
  * @param {HTMLCanvasElement} canvas
  * @param {Curve[]} curves
- * @param {{isEqual?: boolean, isFromZero?: boolean, level?: number}} [options] one scale for both axes; an axis from zero up; height of a dashed line
+ * @param {{isEqual?: boolean, isFromZero?: boolean, level?: number, at?: number}} [options] one scale for both axes; an axis from zero up; height of a
+ *   dashed line; place of an upright line
  */
 export function drawCurves(canvas, curves, options = {}) {
   painted(canvas, () => paintCurves(canvas, curves, options));
 }
 
-/** @param {HTMLCanvasElement} canvas @param {Curve[]} curves @param {{isEqual?: boolean, isFromZero?: boolean, level?: number}} options */
-function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, level }) {
+/** @param {HTMLCanvasElement} canvas @param {Curve[]} curves @param {NonNullable<Parameters<typeof drawCurves>[2]>} options */
+function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, level, at }) {
   const found = penOf(canvas);
   if (!found) return;
   const { pen, width, height } = found;
-  const { soft, line } = inks();
+  const { text, soft, line } = inks();
   let [x, y] = [rangeOf(curves.map((curve) => curve.x)), rangeOf(curves.map((curve) => curve.y))];
   if (level !== undefined) y = rangeOf([[...y, level]]);
   if (isFromZero) y = [0, 1.08 * y[1]];
@@ -107,6 +108,10 @@ function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, leve
     pen.setLineDash([]);
   }
   for (const curve of curves) drawCurve(pen, curve, right, down);
+  if (at !== undefined && at >= x[0] && at <= x[1]) {
+    pen.strokeStyle = text;
+    strokeAlong(pen, [at, at], [y[0], y[1]], right, down);
+  }
 }
 
 /** Numbers at the ends of the axes. @param {CanvasRenderingContext2D} pen @param {{x: [number, number], y: [number, number]}} ranges @param {{width: number, height: number}} size */

@@ -5,6 +5,7 @@ import { nodeInLink, selectedNode } from "../data/motion-requests.js";
 import { number, say, shown, title, unit } from "../data/units.js";
 import { logTicks } from "../draw/picture/ticks.js";
 import { canvas, colourBar, draw, inks } from "../draw/plots.js";
+import { TimeLine } from "../draw/time-line.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { pythonNode } from "../ui/snippets.js";
@@ -70,6 +71,7 @@ export function spectrogram(context) {
   const nodes = context.point.scenario.recording.nodes;
   const choices = new Choices(context.query, nodes);
   const place = canvas("Spectrogram of the node", "spectrogram", "tall");
+  new TimeLine(place, context.time, context.signal);
   const caption = h("figcaption", {});
   const controls = h("div", { class: "controls" });
   const wrong = h("p", { class: "wrong", role: "alert" });

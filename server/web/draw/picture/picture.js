@@ -24,8 +24,8 @@ import { drawNote, drawShape } from "./shapes.js";
 /** @typedef {import("./svg-pen.js").Pen} Pen */
 
 /**
- * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are read, `choosing` and `chosen` with
- * the area that is dragged over (`null` where the drag was broken off), `zoomed` when the reader has changed its ranges, and `painted`.
+ * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are read, `placeclick` with the values at
+ * the mouse, `choosing` and `chosen` with the area that is dragged over (`null` where the drag was broken off), `zoomed` when the reader has changed its ranges, and `painted`.
  */
 export class Picture {
   /** @type {any[]} */
@@ -203,6 +203,8 @@ export class Picture {
   click(px, py) {
     const points = this.describe(px, py);
     if (points.length) this.dispatch("pointclick", { points });
+    const panel = this.panelAt(px, py);
+    if (panel) this.dispatch("placeclick", { x: panel.x.toValue(px), y: panel.y.toValue(py) });
   }
 
   get #size() {

@@ -538,7 +538,7 @@ function niceStep(least) {
 }
 
 /**
- * A place beside the axis.
+ * A place next to the axis.
  * @param {{axis: Vector[], u: Vector[], v: Vector[]}} frames @param {number} node @param {number} u @param {number} v
  * @returns {Vector}
  */

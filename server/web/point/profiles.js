@@ -259,7 +259,7 @@ export function nodeDepths(names, table) {
  * @param {string[]} names
  * @param {(name: string) => any} table of a quantity
  * @param {number} depth in the unit in which it is shown
- * @param {any[]} points points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
+ * @param {any[]} points what the mouse is at in the picture; elsewhere the values are those of the nearest depth
  */
 export function reading(names, table, depth, points) {
   const words = names

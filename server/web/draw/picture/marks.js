@@ -216,7 +216,7 @@ const CORNERS = {
   x: CROSS.map(([across, down]) => [(across - down) * 0.9, (across + down) * 0.9]),
 };
 
-/** Writes the words of a trace's points beside them. @param {Pen} pen @param {any} trace @param {Places} places @param {number} line height [pixels] */
+/** Writes the words of a trace's points next to them. @param {Pen} pen @param {any} trace @param {Places} places @param {number} line height [pixels] */
 export function drawWords(pen, trace, { x, y }, line) {
   const { color, size = WORD } = trace.textfont ?? {};
   const radius = (trace.marker?.size ?? SYMBOL) / 2 + APART;

@@ -2,6 +2,7 @@
 
 import { valueAtTime } from "../data/at-time.js";
 import { spectrumRange } from "../data/motion-requests.js";
+import { partsOf } from "../data/string-parts.js";
 import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
@@ -12,6 +13,7 @@ import {
   spectrumTrace,
 } from "../draw/orbit.js";
 import { draw, laidOut } from "../draw/plots.js";
+import { sayTrack } from "../draw/string-track.js";
 import { timeDots } from "../draw/time-line.js";
 import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
@@ -158,7 +160,11 @@ async function drawQuantities(place, comparison) {
         ),
       ),
   };
-  return drawProfiles(place, profiles, drawable, comparison.signal);
+  const strings = drawable.map(({ detail }) => detail.scenario.string.sections);
+  const isOne = new Set(strings.map((sections) => JSON.stringify(sections))).size === 1;
+  if (isOne) comparison.says.push(sayTrack(partsOf(strings[0])));
+  const track = isOne ? { parts: partsOf(strings[0]), nodes: [] } : null;
+  return drawProfiles(place, profiles, drawable, track, comparison.signal);
 }
 
 /**

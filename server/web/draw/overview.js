@@ -11,7 +11,8 @@ import { namedLines, seenDownhole, spectrumTrace } from "./orbit.js";
 import { inks, LINES } from "./plots.js";
 import { fill, h } from "../ui/dom.js";
 import { link } from "../ui/router.js";
-import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictures.js";
+import { drawCurves, drawTrack, smallCanvas } from "./small-pictures.js";
+import { partsInWords, recordedAt } from "./string-track.js";
 
 /**
  * Data of a point that an overview shows.
@@ -150,10 +151,7 @@ export class Overview {
     const { columns } = await table("loads", { fields: "node,measured_depth,side_force,orbit_radius_rms" });
     const parts = partsOf(point.scenario.string.sections);
     const most = (/** @type {string} */ name) => say(name, Math.max(...columns[name].map(Math.abs)), 3);
-    const nodes = point.scenario.recording.nodes.map(
-      (/** @type {{node?: number, depth?: number}} */ { node, depth }) =>
-        depth ?? columns.measured_depth[columns.node.indexOf(node)],
-    );
+    const nodes = recordedAt(point.scenario, columns);
     const words = `Depth in ${unit("measured_depth").symbol}. Blue: orbit size up to ${most("orbit_radius_rms")}; orange: side force up to ${most("side_force")}. Dots: recorded nodes.`;
     const picture = this.#show("track", words);
     picture.setAttribute("aria-label", `String over depth: ${partsInWords(parts)}`);

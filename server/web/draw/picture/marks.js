@@ -231,8 +231,9 @@ export function drawWords(pen, trace, { x, y }, line) {
     String(trace.text[row])
       .split("<br>")
       .forEach((words, order, all) => {
-        const lines = side === "bottom" ? order + 0.5 : order + 0.5 - all.length;
-        const down = (side === "bottom" ? radius : -radius) + lines * line;
+        const above = { bottom: 0, middle: all.length / 2 }[side] ?? all.length;
+        const away = { bottom: radius, middle: 0 }[side] ?? -radius;
+        const down = away + (order + 0.5 - above) * line;
         if (words.trim()) pen.fillText(words, across, y[row] + down);
       });
   }

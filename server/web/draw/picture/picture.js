@@ -114,9 +114,9 @@ export class Picture {
     return this.#panels.find((panel) => this.axesIn(panel).includes(axis));
   }
 
-  /** Axes of a panel. @param {Panel} panel */
+  /** Axes of a panel that the reader may move. @param {Panel} panel */
   axesIn({ x, y, over }) {
-    return [x, y, ...over];
+    return [x, y, ...over].filter(({ own }) => !own.isFixed);
   }
 
   /** Sets ranges, of axes that match these too. @param {Map<Axis, Range>} ranges */
@@ -135,7 +135,7 @@ export class Picture {
 
   /** Zooms about the middle. @param {number} factor by which more is shown */
   zoomBy(factor) {
-    const changed = [...this.axes.values()].filter(({ words }) => !words);
+    const changed = [...this.axes.values()].filter(({ words, own }) => !words && !own.isFixed);
     this.setRanges(new Map(changed.map((axis) => [axis, axis.widened(factor)])));
     this.dispatch("zoomed");
   }

@@ -28,6 +28,11 @@ function lastTime({ first, count, interval }) {
   return first + (count - 1) * interval;
 }
 
+/** Words of a magnification. @param {number} factor */
+function timesMore(factor) {
+  return factor === 1 ? "no more" : `${factor} times more`;
+}
+
 export class StringPlayer {
   #choices;
   /** @type {Actor[]} */
@@ -174,11 +179,8 @@ export class StringPlayer {
       choice(
         "Motion about the mean",
         [
-          ["", `as it suits${this.#moving.length ? `, ${this.#magnification} times more` : ""}`],
-          ...MAGNIFICATIONS.map(
-            (step) =>
-              /** @type {[string, string]} */ ([String(step), step === 1 ? "no more" : `${step} times more`]),
-          ),
+          ["", `as it suits${this.#moving.length ? `, ${timesMore(this.#magnification)}` : ""}`],
+          ...MAGNIFICATIONS.map((step) => /** @type {[string, string]} */ ([String(step), timesMore(step)])),
         ],
         String(magnification ?? ""),
         set("motion", show),

@@ -107,7 +107,8 @@ def views(sweep: str) -> list[View]:
         View("orbits compared", f"{compared}orbit", f".plot {DRAWN}"),
         View("spectra compared", f"{compared}spectrum", f".plot {DRAWN}"),
         View("strings in motion compared", f"{compared}string", scene),
-        View("new sweep", "#/new", f".plot {DRAWN}"),
+        View("new sweep", "#/new", "main form"),
+        View("its plan, which the service computes", "#/new", f".plot {DRAWN}"),
     ]
 
 

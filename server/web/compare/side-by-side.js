@@ -9,7 +9,7 @@ import { canvas, draw, laidOut } from "../draw/plots.js";
 import { TimeLine } from "../draw/time-line.js";
 import { contactMap } from "../point/contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE } from "../point/rotation.js";
-import { describe, drawSpectrogram, largestOf, RANGES } from "../point/spectrogram.js";
+import { describe, drawSpectrogram, largestOf, RANGES, spectrogramOf } from "../point/spectrogram.js";
 import { StringPlayer } from "../point/string-player.js";
 import { fill, h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
@@ -49,7 +49,7 @@ export async function drawSpectrograms(place, comparison) {
   const { node, window, drawing } = comparison;
   const range = rangeOf(comparison);
   const found = await each(comparison, async (point) => {
-    const table = await comparison.table(point, "spectrogram", { ...node, ...window, range_hz: range });
+    const table = await spectrogramOf(point.path, { ...node, ...window, range_hz: range }, drawing);
     noteNode(comparison, point, table.attributes.node, table.attributes.measured_depth);
     return table;
   });

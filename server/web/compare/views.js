@@ -24,8 +24,8 @@ import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
 
-/** Samples of a line. */
-const SHOWN = 6000;
+/** Samples of a line over time, and of an orbit in its panel, which is a part of the screen. */
+const [SHOWN, OF_ORBIT] = [3000, 2000];
 /** Clearances that differ by less are one [m]. */
 const SAME_CLEARANCE = 1e-6;
 /** Part of a depth below which the ends of two strings are one. */
@@ -170,11 +170,12 @@ async function drawQuantities(place, comparison) {
 /**
  * The orbit of each point's node with what the equilibrium says of that node.
  * @param {Comparison} comparison
+ * @param {number} samples at most
  */
-function orbits(comparison) {
+function orbits(comparison, samples) {
   return each(comparison, async (point) => {
     const [orbit, { columns }] = await Promise.all([
-      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: SHOWN }),
+      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: samples }),
       comparison.table(point, "statics", { fields: "node,low_side_angle,clearance" }),
     ]);
     const row = Math.max(0, columns.node.indexOf(orbit.attributes.node));
@@ -185,7 +186,7 @@ function orbits(comparison) {
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawOrbits(place, comparison) {
-  const found = await orbits(comparison);
+  const found = await orbits(comparison, OF_ORBIT);
   if (!found.length) return draw(place, [], {}, comparison.signal);
   await laidOut(place, comparison.signal);
   const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
@@ -226,7 +227,7 @@ function sayHoles(found) {
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawHistories(place, comparison) {
   const direction = comparison.query.get("direction") ?? "up";
-  const found = await orbits(comparison);
+  const found = await orbits(comparison, SHOWN);
   const traces = found.map(([point, { orbit, lowSide }]) => {
     const { time, u, v, radius } = orbit.columns;
     const seen = seenDownhole(u, v, lowSide);

@@ -26,7 +26,7 @@ import { partsInWords, recordedAt } from "./string-track.js";
  */
 
 /** Samples of a small picture. */
-const SAMPLES = 1500;
+const SAMPLES = 1000;
 /** Lines of the spectrum whose causes are named. */
 const CAUSES = 3;
 /** Width from which the overview is open [pixels]. */
@@ -170,9 +170,10 @@ export class Overview {
     if (!this.#node || !point.tables.includes("history")) return;
     const named = new URLSearchParams(query);
     named.set("node", this.#node);
-    // The same requests as those of the view of the motion.
     const [equilibrium] = nodeTables(point.scenario, named);
     const [cut, lines] = windowTables(point.scenario, named, this.#window);
+    // The view of the motion sends for the same orbit; for a small picture alone a part of its samples is enough.
+    if (query.get("view") !== "motion") cut[1].max_points = SAMPLES;
     const [statics, orbit, spectrum] = await Promise.all([
       table(...equilibrium),
       table(...cut),

@@ -192,7 +192,7 @@ function paintTrack(canvas, parts, { depths, curves, nodes }) {
     pen.fill();
   }
   pen.strokeStyle = line;
-  pen.strokeRect(start, TOP, width - start - RIGHT, height - 2 * TOP);
+  if (curves.length) pen.strokeRect(start, TOP, width - start - RIGHT, height - 2 * TOP);
   for (const { values, colour } of curves) {
     const most = Math.max(...values.map(Math.abs)) || 1;
     pen.strokeStyle = colour;

@@ -19,7 +19,7 @@ from itertools import pairwise
 from statistics import median
 from tempfile import TemporaryDirectory
 
-from playwright.sync_api import BrowserContext, Page, Playwright, sync_playwright
+from playwright.sync_api import BrowserContext, Error, Page, Playwright, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
@@ -274,7 +274,11 @@ def main() -> None:
             print("|---|---|---|---|---|---|---|")
             trivial = []
             for view in measured:
-                found = loaded(playwright, arguments.server, view, arguments.times)
+                try:
+                    found = loaded(playwright, arguments.server, view, arguments.times)
+                except Error as error:
+                    print(f"| {view.name} | {error.message.splitlines()[0]} | | | | | |", flush=True)
+                    continue
                 trivial.append(found.trivial)
                 print(found.row(view.name), flush=True)
             print(f"\nThe trivial page took {min(trivial):.0f} to {max(trivial):.0f} ms.")

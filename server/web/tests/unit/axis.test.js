@@ -106,7 +106,7 @@ test("a range is zoomed about its middle, in the direction of the axis", () => {
 });
 
 test("a low axis has two numbers at least", () => {
-  const axis = placed("y", { range: [-37.4, -34.9] }, [line([0, 1], [-37, -35])], 0, 110);
+  const axis = placed("y", { range: [-37.9, -34.3] }, [line([0, 1], [-37, -35])], 0, 110);
   assert.deepEqual(
     axis.ticks().map(({ value }) => value),
     [-37, -36, -35],

@@ -122,6 +122,7 @@ def started(playwright: Playwright) -> Iterator[BrowserContext]:
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, args=OPTIONS, viewport={"width": 1400, "height": 900}
         )
+        context.set_default_timeout(LONGEST_MS)
         context.pages[0].wait_for_timeout(PAUSE_MS)
         yield context
         context.close()
@@ -251,6 +252,7 @@ def main() -> None:
     parser.add_argument("sweep")
     parser.add_argument("--times", type=int, default=3, help="browsers that are started for each view")
     parser.add_argument("--large", metavar="SWEEP", help="measure views of a sweep of many points, too")
+    parser.add_argument("--only", nargs="*", help="names of the views to be measured; all unless given")
     parser.add_argument("--brushing", action="store_true", help="measure the orbit that follows a dragged window alone")
     parser.add_argument("--map", action="store_true", help="measure the map of the sweep alone, which is a grid")
     parser.add_argument("--difference", metavar="OTHER", help="measure the map of another sweep's differences alone")
@@ -270,6 +272,7 @@ def main() -> None:
             measured = views(arguments.sweep)
             if arguments.large:
                 measured += views_of_sweep(arguments.large, "large sweep: ")
+            measured = [view for view in measured if arguments.only is None or view.name in arguments.only]
             print("| view | first load | ratio | loads after it | ratio | transferred at first | after it |")
             print("|---|---|---|---|---|---|---|")
             trivial = []

@@ -308,6 +308,7 @@ def test_the_string_is_drawn_next_to_profiles_on_their_axis(opened: Opens, sweep
     # A zoom along the depth leaves its width.
     width = "({ picture }) => picture.axis('xaxis0').range"
     before = picture.evaluate(width)
+    picture.locator(".area").last.scroll_into_view_if_needed()
     drag(page, picture.locator(".area").last, (0.5, 0.3), (0.5, 0.6))
     until(page, lambda: "zoom.profiles=y" in page.url)
     assert picture.evaluate(width) == before

@@ -1,11 +1,12 @@
 """How fast the web page is, and what it transfers: `python docs/page_timing.py SERVER SWEEP`.
 
-The sweep has complete points with histories; that of point 1 is shown and brushed. Prints a Markdown table of medians,
-each time of a browser that has just been started with an empty profile on disk. A reader's browser has a profile, too;
-in a private window, which has none, pages take longer to load.
+The sweep has complete points with histories and snapshots over two parameters, some of them verified. Prints a Markdown
+table of its views, and with `--large` of those of a sweep of many points. Each time is a median, and also given in
+multiples of the time of a trivial page, the answer of `/livez`, which the same server sends and the same browser shows
+next to it: such ratios hold on machines that are busy or slow.
 
-A view is there once it has its numbers and its picture is drawn. The first load and those that follow are each of a
-page of its own, and so is the way from another view.
+A view is there once it has its numbers and its picture is drawn. Browsers start with an empty profile on disk. Each
+load is of a new page; at the first one no file of the page is in the browser's cache.
 """
 
 from __future__ import annotations
@@ -18,29 +19,29 @@ from itertools import pairwise
 from statistics import median
 from tempfile import TemporaryDirectory
 
-from playwright.sync_api import BrowserContext, Page, Playwright, sync_playwright
+from playwright.sync_api import BrowserContext, Error, Page, Playwright, sync_playwright
 
 CHROMIUM = "/usr/bin/chromium"
 OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"]
-PAUSE_MS = 1000
+PAUSE_MS = 500
 """Pause between two loads of a page, and after the start of the browser [ms], in which it writes its cache."""
-REPEATED = 5
-"""Loads of a view that follow the first in each browser; what stands for them is their median."""
+REPEATED = 3
+"""Loads of a view that follow the first in each browser."""
 MOVES = 200
 """Moves of the mouse while a window is brushed; the browser takes one a frame."""
 
-# When the link is changed, and when each of several things is there, one after the other [ms], by the page's own clock,
-# which starts with its loading.
-SHOWN = """([link, ...selectors]) => new Promise((resolve) => {
-    const times = [performance.now()];
+# When something is there [ms], by the page's own clock, which starts with its loading.
+SHOWN = """([selector, limit]) => new Promise((resolve, reject) => {
     const look = () => {
-        while (times.length <= selectors.length && document.querySelector(selectors[times.length - 1]))
-            times.push(performance.now());
-        times.length > selectors.length ? resolve(times) : requestAnimationFrame(look);
+        const now = performance.now();
+        if (document.querySelector(selector)) resolve(now);
+        else if (now > limit) reject(new Error(`${location.hash} has no ${selector}`));
+        else requestAnimationFrame(look);
     };
-    if (link !== null) location.hash = link;
     requestAnimationFrame(look);
 })"""
+LONGEST_MS = 120_000
+"""Time after which a view that is not there ends the measurement [ms]."""
 # Bytes that all requests so far have transferred; those from the browser's cache transfer none.
 BYTES = """() => [...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")]
     .reduce((sum, entry) => sum + entry.transferSize, 0)"""
@@ -76,22 +77,42 @@ class View:
     """Selects what is there once it is drawn."""
 
 
+def views_of_sweep(sweep: str, prefix: str = "") -> list[View]:
+    """Views of a sweep over two parameters."""
+    of_sweep = f"#/sweeps/{sweep}?view="
+    pictured = {"map": "map", "window": "window", "scatter": "scatter", "effects": "sensitivities"}
+    return [
+        *(View(prefix + name, of_sweep + view, f".plot {DRAWN}") for view, name in pictured.items()),
+        View(f"{prefix}parallel coordinates", f"{of_sweep}parallel", ".parallel .axis-title"),
+        View(f"{prefix}table of points", f"{of_sweep}table", ".rows tbody tr"),
+    ]
+
+
 def views(sweep: str) -> list[View]:
     """Views that are measured."""
-    of_sweep, of_point = f"#/sweeps/{sweep}?view=", f"#/sweeps/{sweep}/points/1?view="
-
-    def pictured(name: str, link: str, place: str = ".plot") -> View:
-        return View(name, link, f"{place} {DRAWN}")
-
+    of_point = f"#/sweeps/{sweep}/points/1?view="
+    compared = f"#/compare?points={sweep}:1,{sweep}:2&view="
+    scene, orbit = "canvas.scene[data-drawn]", f".plot[aria-label^='Orbit of node'] {DRAWN}"
     return [
         View("sweeps", "#/sweeps", "main tbody tr"),
-        pictured("map", f"{of_sweep}map"),
-        View("table of points", f"{of_sweep}table", ".rows tbody tr"),
-        pictured("profiles of a point", f"{of_point}profiles"),
-        pictured("its history, orbit and spectrum", f"{of_point}motion", ".plot[aria-label^='Orbit of node']"),
-        View("its well", f"{of_point}well", "canvas.scene[data-drawn]"),
-        pictured("new sweep", "#/new"),
+        *views_of_sweep(sweep),
+        View("profiles of a point", f"{of_point}profiles", f".plot {DRAWN}"),
+        View("its history, orbit and spectrum", f"{of_point}motion", orbit),
+        View("its spectrogram", f"{of_point}spectrogram", f".plot {DRAWN}"),
+        View("its string in motion", f"{of_point}string", scene),
+        View("its well", f"{of_point}well", scene),
+        View("its energy", f"{of_point}energy", f".plot {DRAWN}"),
+        View("its effects, accuracy, downloads", f"{of_point}about", "section table"),
+        View("profiles compared", f"{compared}profiles", f".plot {DRAWN}"),
+        View("orbits compared", f"{compared}orbit", f".plot {DRAWN}"),
+        View("spectra compared", f"{compared}spectrum", f".plot {DRAWN}"),
+        View("strings in motion compared", f"{compared}string", scene),
+        View("new sweep", "#/new", "main form"),
+        View("its plan, which the service computes", "#/new", f".plot {DRAWN}"),
     ]
+
+
+TRIVIAL = View("a trivial page", "livez", "body")
 
 
 @contextmanager
@@ -101,16 +122,17 @@ def started(playwright: Playwright) -> Iterator[BrowserContext]:
         context = playwright.chromium.launch_persistent_context(
             profile, executable_path=CHROMIUM, args=OPTIONS, viewport={"width": 1400, "height": 900}
         )
+        context.set_default_timeout(LONGEST_MS)
         context.pages[0].wait_for_timeout(PAUSE_MS)
         yield context
         context.close()
 
 
 def opened(context: BrowserContext, server: str, view: View) -> tuple[float, float]:
-    """Milliseconds from the start of loading until a view is drawn, and bytes transferred."""
+    """Milliseconds from the start of loading until a view is drawn, and bytes transferred until then."""
     page = context.new_page()
     page.goto(f"{server}/{view.link}", wait_until="commit")
-    _, drawn = page.evaluate(SHOWN, [None, view.drawn])
+    drawn = page.evaluate(SHOWN, [view.drawn, LONGEST_MS])
     size = page.evaluate(BYTES)
     page.wait_for_load_state("networkidle")
     page.wait_for_timeout(PAUSE_MS)
@@ -118,24 +140,50 @@ def opened(context: BrowserContext, server: str, view: View) -> tuple[float, flo
     return drawn, size
 
 
-def moved(context: BrowserContext, server: str, sweep: str, view: View) -> float:
-    """Milliseconds from another view until one is drawn; pictures were drawn before."""
-    page = context.new_page()
-    page.goto(f"{server}/#/sweeps/{sweep}?view=scatter")
-    page.locator(f".plot {DRAWN}").first.wait_for()
-    page.goto(f"{server}/#/nowhere")
-    page.locator("main a").wait_for()
-    page.wait_for_load_state("networkidle")
-    page.wait_for_timeout(PAUSE_MS)
-    start, drawn = page.evaluate(SHOWN, [view.link, view.drawn])
-    page.close()
-    return float(drawn - start)
+@dataclass
+class Loaded:
+    """Medians of the loads of a view."""
+
+    trivial: float
+    """Time of the trivial page next to it [ms]."""
+    first: float
+    """Time of the first load [ms]."""
+    after: float
+    """Time of those after it [ms]."""
+    first_bytes: float
+    """Bytes until the first load was seen."""
+    after_bytes: float
+    """Bytes until those after it were seen."""
+
+    def row(self, name: str) -> str:
+        """Row of the table."""
+        times = [f"{time:.0f} ms | {time / self.trivial:.1f}" for time in (self.first, self.after)]
+        sizes = [f"{size / 1000:.0f} kB" for size in (self.first_bytes, self.after_bytes)]
+        return "| " + " | ".join([name, *times, *sizes]) + " |"
+
+
+def loaded(playwright: Playwright, server: str, view: View, times: int) -> Loaded:
+    """Loads a view in browsers that have just been started, in turn with the trivial page."""
+    trivial, first, after = [], [], []
+    for _ in range(times):
+        with started(playwright) as context:
+            # The first page of a browser takes longer than others.
+            opened(context, server, TRIVIAL)
+            first.append(opened(context, server, view))
+            for _ in range(REPEATED):
+                trivial.append(opened(context, server, TRIVIAL))
+                after.append(opened(context, server, view))
+
+    def middle(loads: list[tuple[float, float]], column: int) -> float:
+        return median(load[column] for load in loads)
+
+    return Loaded(middle(trivial, 0), middle(first, 0), middle(after, 0), middle(first, 1), middle(after, 1))
 
 
 def mapped(page: Page, server: str, sweep: str, view: str) -> tuple[dict[str, float], float]:
     """A map of a sweep: milliseconds of each answer that it needs of tables, and from the last to the picture."""
     page.goto(f"{server}/#/sweeps/{sweep}?view={view}", wait_until="commit")
-    _, now = page.evaluate(SHOWN, [None, f".plot {DRAWN}"])
+    now = page.evaluate(SHOWN, [f".plot {DRAWN}", LONGEST_MS])
     answers = page.evaluate(ANSWERS)
     return {name: duration for name, duration, _ in answers}, now - max(end for *_, end in answers)
 
@@ -202,8 +250,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("server")
     parser.add_argument("sweep")
-    parser.add_argument("--times", type=int, default=5)
-    parser.add_argument("--brushing", action="store_true", help="measure nothing else")
+    parser.add_argument("--times", type=int, default=3, help="browsers that are started for each view")
+    parser.add_argument("--large", metavar="SWEEP", help="measure views of a sweep of many points, too")
+    parser.add_argument("--only", nargs="*", help="names of the views to be measured; all unless given")
+    parser.add_argument("--brushing", action="store_true", help="measure the orbit that follows a dragged window alone")
     parser.add_argument("--map", action="store_true", help="measure the map of the sweep alone, which is a grid")
     parser.add_argument("--difference", metavar="OTHER", help="measure the map of another sweep's differences alone")
     arguments = parser.parse_args()
@@ -219,20 +269,23 @@ def main() -> None:
             print(f"from the last of them to the map: {median(time for _, time in maps):.0f} ms")
             return
         if not arguments.brushing:
-            print("| view | first load | loads after it | from another view | transferred at first | after it |")
-            print("|---|---|---|---|---|---|")
-        for view in [] if arguments.brushing else views(arguments.sweep):
-            first, after, inside = [], [], []
-            for _ in range(arguments.times):
-                with started(playwright) as context:
-                    first.append(opened(context, arguments.server, view))
-                    after += [opened(context, arguments.server, view) for _ in range(REPEATED)]
-                    inside += [moved(context, arguments.server, arguments.sweep, view) for _ in range(2)]
-            (drawn, size), (drawn_after, size_after) = [list(zip(*of, strict=True)) for of in (first, after)]
-            times = [median(column) for column in (drawn, drawn_after, inside)]
-            sizes = [median(column) / 1000 for column in (size, size_after)]
-            told = [f"{time:.0f} ms" for time in times] + [f"{size:.0f} kB" for size in sizes]
-            print("| " + " | ".join([view.name, *told]) + " |", flush=True)
+            measured = views(arguments.sweep)
+            if arguments.large:
+                measured += views_of_sweep(arguments.large, "large sweep: ")
+            measured = [view for view in measured if arguments.only is None or view.name in arguments.only]
+            print("| view | first load | ratio | loads after it | ratio | transferred at first | after it |")
+            print("|---|---|---|---|---|---|---|")
+            trivial = []
+            for view in measured:
+                try:
+                    found = loaded(playwright, arguments.server, view, arguments.times)
+                except Error as error:
+                    print(f"| {view.name} | {error.message.splitlines()[0]} | | | | | |", flush=True)
+                    continue
+                trivial.append(found.trivial)
+                print(found.row(view.name), flush=True)
+            print(f"\nThe trivial page took {min(trivial):.0f} to {max(trivial):.0f} ms.")
+            return
         drags = []
         for _ in range(arguments.times):
             with started(playwright) as context:

@@ -18,8 +18,10 @@ OPTIONS = ["--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader"
 WIDTH, LARGEST_HEIGHT = 1200, 1150
 TALLER = {
     "sweep-map": 1400,
+    "sweep-window": 1500,
     "sweep-parallel": 1400,
     "sweep-effects": 1300,
+    "point-profiles": 1560,
     "point-motion": 1500,
     "point-string": 1500,
     "compare-string": 1500,
@@ -35,13 +37,16 @@ SLOWEST_MS = 90_000
 """How long the slowest part of a view may take on a machine with other work [ms]."""
 STRING_TIME = "50"
 """Time at which the string is shown [s]."""
+LIMITS = "bit_stick_slip_severity:1.14"
+"""Limits of the window, by which the classes of the paper's string differ."""
 
 
 def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     """The link of each view."""
     links = {"sweeps": "#/sweeps", "new": f"#/new?from={sweep}"}
-    for view in ("map", "scatter", "parallel", "effects", "table"):
+    for view in ("map", "window", "scatter", "parallel", "effects", "table"):
         links[f"sweep-{view}"] = f"#/sweeps/{sweep}?view={view}&colour=orbit_radius_rms_57_7m"
+    links["sweep-window"] += f"&limits={LIMITS}"
     links["sweep-failures"] = f"#/sweeps/{failed}?view=failures"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_57_7m"
     for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "about"):
@@ -57,7 +62,10 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
 
 
 def unfold(page: Page, name: str) -> None:
-    """Opens what is folded at first and worth a picture."""
+    """Opens what is folded at first and worth a picture, and folds what another picture shows."""
+    if name.startswith("point-") and name != "point-profiles":
+        # The overview is in the picture of profiles.
+        page.locator("details.overview > summary").click()
     if name == "new":
         page.get_by_text("All fields, with units").click()
         page.locator("summary", has_text="operation").first.click()
@@ -65,7 +73,7 @@ def unfold(page: Page, name: str) -> None:
         page.get_by_text("modes were found up to").wait_for(timeout=SLOWEST_MS)
     if name == "sweep-parallel":
         page.get_by_text("Keep points by numbers").click()
-        said = page.get_by_role("status", name="The point that the mouse is at")
+        said = page.get_by_role("status", name="The point that is read")
         box = page.locator(".plot").bounding_box()
         # Down between two axes, until there is a line.
         for step in range(100):
@@ -94,14 +102,16 @@ def main() -> None:
     parser.add_argument("other")
     parser.add_argument("--failed", help="a sweep whose failures are shown, in place of those of the first one")
     parser.add_argument("--only", nargs="*", help="names of the pictures to be taken; all unless given")
+    parser.add_argument("--themes", nargs="*", default=["light", "dark"], help="themes of the pictures")
     parser.add_argument("folder", type=Path, nargs="?", default=Path(__file__).parent / "page")
     arguments = parser.parse_args()
     links = views(arguments.sweep, arguments.other, arguments.failed or arguments.sweep)
     arguments.folder.mkdir(parents=True, exist_ok=True)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
-        for theme in ("light", "dark"):
+        for theme in arguments.themes:
             context = browser.new_context(viewport={"width": WIDTH, "height": 800}, color_scheme=theme)
+            context.set_default_timeout(SLOWEST_MS)
             for name, link in links.items():
                 if arguments.only is not None and name not in arguments.only:
                     continue

@@ -9,7 +9,7 @@ use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::judgement::{Judgement, MotionClass, OperatingLimits};
 use crate::point::PointState;
@@ -73,16 +73,10 @@ impl PointsTable {
         self
     }
 
-    /// Class of a point by the limits; absent without a result.
-    fn class(&self, point: &PointSummary) -> serde_json::Result<Option<MotionClass>> {
+    /// Limits by which classes are judged; absent unless the column is kept.
+    fn judging(&self) -> Option<&OperatingLimits> {
         let is_kept = self.kept.as_ref().is_none_or(|kept| kept.contains(columns::CLASS.name));
-        let Some(limits) = self.limits.as_ref().filter(|_| is_kept) else { return Ok(None) };
-        let judgement = match (&point.error, &point.summary) {
-            (Some(error), _) => Judgement::of_failure(&error.reason, limits),
-            (None, Some(summary)) => Judgement::of_row(&serde_json::from_str(summary)?, limits),
-            (None, None) => return Ok(None),
-        };
-        Ok(Some(judgement.class))
+        self.limits.as_ref().filter(|_| is_kept)
     }
 
     /// Adds the row of a point.
@@ -91,16 +85,22 @@ impl PointsTable {
     /// Its summary is no JSON object.
     pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
         let row = self.ordinals.len();
-        self.classes.push(self.class(&point)?.map(|class| class.name().to_owned()));
+        // A class follows from the whole summary, which is parsed once: its columns are then taken from the parsed object.
+        let summary = point.summary.as_deref().filter(|_| self.judging().is_some());
+        let parsed: Option<Map<String, Value>> = summary.map(serde_json::from_str).transpose()?;
+        let class = self.judging().and_then(|limits| class(&point, parsed.as_ref(), limits));
+        self.classes.push(class.map(|class| class.name().to_owned()));
         self.ordinals.push(Some(point.ordinal.into()));
         self.states.push(Some(point.state.to_string()));
         for (name, value) in point.parameters {
             put(&mut self.parameters, name, row, value);
         }
-        if let Some(summary) = &point.summary {
-            let mut fields = Fields { columns: &mut self.fields, kept: self.kept.as_ref(), row };
-            let object = Object { fields: &mut fields, path: "" };
-            object.deserialize(&mut serde_json::Deserializer::from_str(summary))?;
+        let mut fields = Fields { columns: &mut self.fields, kept: self.kept.as_ref(), row };
+        let object = Object { fields: &mut fields, path: "" };
+        match (&parsed, &point.summary) {
+            (Some(parsed), _) => object.deserialize(parsed)?,
+            (None, Some(summary)) => object.deserialize(&mut serde_json::Deserializer::from_str(summary))?,
+            (None, None) => {}
         }
         for (name, value) in point.biases {
             put(&mut self.biases, name, row, value);
@@ -148,6 +148,19 @@ impl PointsTable {
             .with(&columns::ERROR_TIME, Column::Number(self.error_times))
             .with(&columns::ERROR_NODE, Column::Integer(self.error_nodes))
     }
+}
+
+/// Class of a point with this summary by the limits; absent without a result.
+fn class(
+    point: &PointSummary,
+    summary: Option<&Map<String, Value>>,
+    limits: &OperatingLimits,
+) -> Option<MotionClass> {
+    let judgement = match &point.error {
+        Some(error) => Judgement::of_failure(&error.reason, limits),
+        None => Judgement::of_row(summary?, limits),
+    };
+    Some(judgement.class)
 }
 
 fn put(columns: &mut IndexMap<String, Vec<f64>>, name: String, row: usize, value: f64) {
@@ -337,7 +350,7 @@ impl<'de> Visitor<'de> for Field<'_, '_> {
 mod tests {
     use super::*;
     use drillsweep_scenario::FailureClass;
-    use serde_json::{Map, json};
+    use serde_json::json;
 
     fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
         let mut table = PointsTable::default();

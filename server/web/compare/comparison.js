@@ -15,6 +15,7 @@ import { say } from "../data/units.js";
  * @property {{from: number, to: number}} window [s]
  * @property {(changes: Record<string, string | null>) => void} keep keeps a choice in the link
  * @property {(point: Compared, name: string, query?: Record<string, any>) => Promise<any>} table
+ * @property {import("../draw/time-cursor.js").TimeCursor} time at which views over time are read
  * @property {string[]} lacking sentences about what points lack, which a view adds to
  * @property {Map<number, string>} sources tables that points are drawn from, by their numbers, where a view has a choice
  * @property {string[]} says sentences of the caption, which a view adds to

@@ -21,7 +21,7 @@ const AMPLITUDES = [
 ];
 
 /**
- * Choices that a view has besides node and window.
+ * Choices that a view has in addition to node and window.
  * @type {Record<string, (choices: Choices, set: Set) => HTMLElement[]>}
  */
 const OWN = {

@@ -158,7 +158,7 @@ function refOf(letter, order) {
   return `${letter}${order ? order + 1 : ""}`;
 }
 
-/** Width of a character of a name, about, and of what is beside it [pixels]. */
+/** Width of a character of a name, about, and of what is next to it [pixels]. */
 const [CHARACTER, BESIDE] = [6.2, 110];
 
 /**

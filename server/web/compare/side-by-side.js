@@ -6,9 +6,10 @@ import { largestShown } from "../data/decimation.js";
 import { frames } from "../data/snapshots.js";
 import { number, shown, title } from "../data/units.js";
 import { canvas, draw, laidOut } from "../draw/plots.js";
+import { TimeLine } from "../draw/time-line.js";
 import { contactMap } from "../point/contacts.js";
 import { endsOfHistory, endsOfSnapshots, RECORD_ENDS, TORQUE } from "../point/rotation.js";
-import { describe, drawSpectrogram, largestOf, RANGES } from "../point/spectrogram.js";
+import { describe, drawSpectrogram, largestOf, RANGES, spectrogramOf } from "../point/spectrogram.js";
 import { StringPlayer } from "../point/string-player.js";
 import { fill, h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
@@ -23,12 +24,13 @@ import { panelsOverTime } from "./panels.js";
  * @param {Compared} point
  * @returns {import("../point/part.js").PointContext}
  */
-function contextOf({ query, keep, table, drawing }, point) {
+function contextOf({ query, keep, time, table, drawing }, point) {
   return {
     point: point.detail,
     path: point.path,
     query,
     keep,
+    time,
     bias: () => "",
     table: (name, asks) => table(point, name, asks),
     diagnosis: () => get(`${point.path}/diagnosis`, {}, drawing),
@@ -47,7 +49,7 @@ export async function drawSpectrograms(place, comparison) {
   const { node, window, drawing } = comparison;
   const range = rangeOf(comparison);
   const found = await each(comparison, async (point) => {
-    const table = await comparison.table(point, "spectrogram", { ...node, ...window, range_hz: range });
+    const table = await spectrogramOf(point.path, { ...node, ...window, range_hz: range }, drawing);
     noteNode(comparison, point, table.attributes.node, table.attributes.measured_depth);
     return table;
   });
@@ -57,6 +59,7 @@ export async function drawSpectrograms(place, comparison) {
     heading: point.name,
     picture: canvas(`Spectrogram, point ${point.name}`, `spectrogram${point.number}`),
   }));
+  for (const { picture } of pictures) new TimeLine(picture, comparison.time, drawing);
   fill(
     place,
     pictures.map(({ table, heading, picture }) =>
@@ -126,7 +129,7 @@ export async function drawContactMaps(place, comparison) {
   const most = Math.max(...found.map(([, { motion }]) => largestShown(motion.columns.normal_force)));
   const maps = found.map(([point, one]) => ({
     ...one,
-    map: contactMap(one.context, null, { heading: point.name, key: `contacts${point.number}` }),
+    map: contactMap(one.context, { heading: point.name, key: `contacts${point.number}` }),
   }));
   fill(
     place,

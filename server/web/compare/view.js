@@ -5,6 +5,8 @@ import { say, sayParameters } from "../data/units.js";
 import { dragWindow } from "../draw/brush.js";
 import { DepthCursor } from "../draw/depth-cursor.js";
 import { canvas } from "../draw/plots.js";
+import { TimeCursor } from "../draw/time-cursor.js";
+import { TimeLine } from "../draw/time-line.js";
 import { quantityTicks, scrolled } from "../point/profiles.js";
 import { fill, h } from "../ui/dom.js";
 import { comparedIn, rememberComparison } from "../ui/last-comparison.js";
@@ -129,6 +131,9 @@ class ShownComparison {
   #place;
   #ticks;
   #cursor;
+  #time;
+  /** @type {TimeLine | null} */
+  #timeLine = null;
   #controls = h("div", { class: "controls" });
   #lacking = h("div", { class: "lacking", role: "status", "aria-label": "What is missing" });
   #caption = h("figcaption", {});
@@ -158,11 +163,19 @@ class ShownComparison {
       { query, keep: (changes) => this.#keep(changes) },
       (depth, points) => this.#readAt(depth, points),
     );
+    this.#time = new TimeCursor({ query, keep: (changes) => this.#keep(changes) }, signal);
+    if (VIEWS[view].hasTime) this.#timeLine = new TimeLine(this.#place, this.#time, signal);
   }
 
   get parts() {
     const isProfiles = this.#choices.view === "profiles";
-    const figure = h("figure", {}, isProfiles ? scrolled(this.#place) : this.#place, this.#caption);
+    const figure = h(
+      "figure",
+      {},
+      isProfiles ? scrolled(this.#place) : this.#place,
+      this.#caption,
+      this.#timeLine?.reading,
+    );
     return [
       h("div", { style: "height:1rem" }),
       this.#tabs,
@@ -235,6 +248,7 @@ class ShownComparison {
       node,
       window,
       keep: (changes) => this.#keep(changes),
+      time: this.#time,
       table: (point, name, asks = {}) => get(`${point.path}/${name}`, { format: "json", ...asks }, drawing),
       lacking: [],
       sources: new Map(),
@@ -300,7 +314,8 @@ class ShownComparison {
       says.map((sentence) => `${sentence} `),
       shownNodes.length > 0 &&
         `The recorded node of each point that is nearest to ${say("measured_depth", depth)}: ${shownNodes.join("; ")}.`,
-      VIEWS[view].hasTime && " Drag across the picture to choose a window; the other views follow.",
+      VIEWS[view].hasTime &&
+        " Drag across the picture to choose a window; the other views follow. Select a place for the time at which all are read.",
     );
   }
 }

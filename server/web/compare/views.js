@@ -1,6 +1,8 @@
 // Views of a comparison, by their names in the link.
 
+import { valueAtTime } from "../data/at-time.js";
 import { spectrumRange } from "../data/motion-requests.js";
+import { partsOf } from "../data/string-parts.js";
 import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
@@ -11,6 +13,8 @@ import {
   spectrumTrace,
 } from "../draw/orbit.js";
 import { draw, laidOut } from "../draw/plots.js";
+import { sayTrack } from "../draw/string-track.js";
+import { timeDots } from "../draw/time-line.js";
 import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
@@ -20,8 +24,8 @@ import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
 
-/** Samples of a line. */
-const SHOWN = 6000;
+/** Samples of a line over time, and of an orbit in its panel, which is a part of the screen. */
+const [SHOWN, OF_ORBIT] = [3000, 2000];
 /** Clearances that differ by less are one [m]. */
 const SAME_CLEARANCE = 1e-6;
 /** Part of a depth below which the ends of two strings are one. */
@@ -156,17 +160,22 @@ async function drawQuantities(place, comparison) {
         ),
       ),
   };
-  return drawProfiles(place, profiles, drawable, comparison.signal);
+  const strings = drawable.map(({ detail }) => detail.scenario.string.sections);
+  const isOne = new Set(strings.map((sections) => JSON.stringify(sections))).size === 1;
+  if (isOne) comparison.says.push(sayTrack(partsOf(strings[0])));
+  const track = isOne ? { parts: partsOf(strings[0]), nodes: [] } : null;
+  return drawProfiles(place, profiles, drawable, track, comparison.signal);
 }
 
 /**
  * The orbit of each point's node with what the equilibrium says of that node.
  * @param {Comparison} comparison
+ * @param {number} samples at most
  */
-function orbits(comparison) {
+function orbits(comparison, samples) {
   return each(comparison, async (point) => {
     const [orbit, { columns }] = await Promise.all([
-      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: SHOWN }),
+      comparison.table(point, "orbit", { ...comparison.node, ...comparison.window, max_points: samples }),
       comparison.table(point, "statics", { fields: "node,low_side_angle,clearance" }),
     ]);
     const row = Math.max(0, columns.node.indexOf(orbit.attributes.node));
@@ -177,7 +186,7 @@ function orbits(comparison) {
 
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawOrbits(place, comparison) {
-  const found = await orbits(comparison);
+  const found = await orbits(comparison, OF_ORBIT);
   if (!found.length) return draw(place, [], {}, comparison.signal);
   await laidOut(place, comparison.signal);
   const isZoomed = (comparison.query.get("zoom") ?? "motion") === "motion";
@@ -191,6 +200,15 @@ async function drawOrbits(place, comparison) {
     traces: [holeTrace(one.clearance), traces[order]],
   }));
   const { traces: all, layout } = panelsInPlane(place, panels, orbitLayout(isZoomed, traces, clearance));
+  const dotsAt = (/** @type {number} */ time) =>
+    found.flatMap(([, { orbit }], order) => {
+      const [x, y] = [traces[order].x, traces[order].y].map((values) =>
+        valueAtTime(orbit.columns.time, values, time),
+      );
+      const axis = order ? order + 1 : "";
+      return x === null || y === null ? [] : [{ x, y, xaxis: `x${axis}`, yaxis: `y${axis}` }];
+    });
+  timeDots(place, comparison.time, dotsAt, comparison.drawing);
   return draw(place, all, { ...layout, shows: [comparison.node, isZoomed] }, comparison.signal);
 }
 
@@ -209,7 +227,7 @@ function sayHoles(found) {
 /** @param {HTMLElement} place @param {Comparison} comparison */
 async function drawHistories(place, comparison) {
   const direction = comparison.query.get("direction") ?? "up";
-  const found = await orbits(comparison);
+  const found = await orbits(comparison, SHOWN);
   const traces = found.map(([point, { orbit, lowSide }]) => {
     const { time, u, v, radius } = orbit.columns;
     const seen = seenDownhole(u, v, lowSide);

@@ -29,6 +29,15 @@ export function sayBias(name, value) {
   );
 }
 
+/**
+ * The worst bias that verification found in a sweep.
+ * @param {{bias: number, ordinal: number, promised?: number | null}} worst of orbit size, relative
+ */
+export function sayWorst({ bias, ordinal, promised }) {
+  const kept = promised ? ` (promised: ${sayBias("orbit_radius_rms", promised).replace("+", "")})` : "";
+  return `Verified against reference runs: worst bias of orbit size ${sayBias("orbit_radius_rms", bias)} at point ${ordinal}${kept}.`;
+}
+
 /** The findings of a sweep that verifies points; none of one that does not. */
 export class Biases {
   /** @type {Record<string, any>} */
@@ -81,7 +90,7 @@ export class Biases {
   }
 
   /**
-   * The bias of one point, to stand beside its number; empty where that is not known.
+   * The bias of one point, to stand next to its number; empty where that is not known.
    * @param {string} name
    * @param {number} ordinal
    */
@@ -112,7 +121,7 @@ export class Biases {
   }
 
   /**
-   * Beside a number of a point: its own bias, or else the mean one of the sweep.
+   * Text next to a number of a point: its own bias, or else the mean one of the sweep.
    * @param {string} name
    * @param {number} ordinal
    */

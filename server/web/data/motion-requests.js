@@ -1,7 +1,7 @@
 // Requests for the motion of a recorded node. This module imports nothing, so that `preload.js` can use it before the other modules have run.
 
-/** Samples in a picture: two for each pixel of a wide screen. */
-const SHOWN = 4000;
+/** Samples in a picture: two for each pixel of a screen of usual width. */
+const SHOWN = 2500;
 
 /** Frequencies up to which full spectra are shown [Hz]. */
 const RANGES = ["5", "20", "50", "100"];
@@ -34,7 +34,7 @@ export function nodeTables(scenario, query) {
 export function windowTables(scenario, query, { from, to }) {
   const node = selectedNode(scenario, query);
   return [
-    ["orbit", { ...node, from, to, max_points: 2 * SHOWN }],
+    ["orbit", { ...node, from, to, max_points: SHOWN }],
     [
       "spectrum",
       {

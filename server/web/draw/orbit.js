@@ -279,7 +279,7 @@ export function multiple(frequency, base, resolution, name) {
     : "";
 }
 
-/** Part of a frequency within which a mode counts as that of a line, beside half the resolution: contacts that lift off shift lines. */
+/** Part of a frequency within which a mode counts as that of a line, in addition to half the resolution: contacts that lift off shift lines. */
 const NEAR = 0.01;
 /** Half of the band about a line in which modes are counted: a part of its frequency, and so many times what is near. */
 const [BAND, WIDER] = [0.25, 5];

@@ -1,16 +1,18 @@
 // Overview of a point above its views: string over depth, orbit, spectrum with causes, and rotation speed of the bit.
 
 import { Problem } from "../data/api.js";
+import { valueAtTime } from "../data/at-time.js";
 import { causeOf, causeWords } from "../data/judgement.js";
 import { chosenWindow, nodeInLink, nodeTables, windowTables } from "../data/motion-requests.js";
 import { recordedAs } from "../data/statistics.js";
 import { partsOf } from "../data/string-parts.js";
 import { say, shown, unit } from "../data/units.js";
 import { namedLines, seenDownhole, spectrumTrace } from "./orbit.js";
-import { LINES } from "./plots.js";
+import { inks, LINES } from "./plots.js";
 import { fill, h } from "../ui/dom.js";
 import { link } from "../ui/router.js";
-import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictures.js";
+import { drawCurves, drawTrack, smallCanvas } from "./small-pictures.js";
+import { partsInWords, recordedAt } from "./string-track.js";
 
 /**
  * Data of a point that an overview shows.
@@ -19,11 +21,12 @@ import { drawCurves, drawTrack, partsInWords, smallCanvas } from "./small-pictur
  * @property {URLSearchParams} query of the link
  * @property {() => Promise<any>} diagnosis with causes of spectral lines
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {import("./time-cursor.js").TimeCursor} [time] at which histories are read; absent where no view below has it
  * @property {AbortSignal} signal
  */
 
 /** Samples of a small picture. */
-const SAMPLES = 1500;
+const SAMPLES = 1000;
 /** Lines of the spectrum whose causes are named. */
 const CAUSES = 3;
 /** Width from which the overview is open [pixels]. */
@@ -51,20 +54,23 @@ export class Overview {
   #node;
   #window;
   #tiles;
+  #place;
+  /** Paints the pictures that have the time cursor anew. @type {Map<string, () => void>} */
+  #timed = new Map();
   element;
 
   /** @param {Shown} context @param {string[]} place of the point in links */
   constructor(context, place) {
     const { point, query } = context;
     this.#context = context;
+    this.#place = place;
     this.#node = overviewNode(point, query);
     this.#window = chosenWindow(point, query);
     const tile = (/** @type {string} */ name, /** @type {string} */ view, size = "") => {
       const [picture, caption] = [smallCanvas(name, size), h("span", { class: "small soft" })];
-      const to = link(place, { view, ...(this.#node ? { node: this.#node } : {}) });
       const element = h(
         "a",
-        { class: `tile ${size}`, href: to, hidden: true },
+        { class: `tile ${size}`, href: this.#to(view), "data-view": view, hidden: true },
         h("strong", {}, name),
         picture,
         caption,
@@ -87,6 +93,36 @@ export class Overview {
         Object.values(this.#tiles).map(({ element }) => element),
       ),
     );
+  }
+
+  /** @param {string} view @param {Record<string, string>} [choices] of the link @returns {string} link to a view of the node that is shown */
+  #to(view, choices = {}) {
+    return link(this.#place, { ...choices, view, ...(this.#node ? { node: this.#node } : {}) });
+  }
+
+  /** Takes choices of the link over into the links of the pictures. @param {Record<string, string>} choices */
+  follow(choices) {
+    for (const { element } of Object.values(this.#tiles))
+      element.setAttribute("href", this.#to(element.dataset.view ?? "", choices));
+  }
+
+  /** Paints a picture, and again when the time cursor moves, once a frame. @param {string} name @param {(time: number | null) => void} paint */
+  #paintTimed(name, paint) {
+    const { time, signal } = this.#context;
+    paint(time?.time ?? null);
+    if (!time) return;
+    const isNew = !this.#timed.size;
+    this.#timed.set(name, () => paint(time.time));
+    let isDue = false;
+    if (!isNew) return;
+    time.follow(() => {
+      if (isDue) return;
+      isDue = true;
+      requestAnimationFrame(() => {
+        isDue = false;
+        for (const again of this.#timed.values()) again();
+      });
+    }, signal);
   }
 
   /** Draws what the result has; a table that it lacks leaves its picture out. */
@@ -115,10 +151,7 @@ export class Overview {
     const { columns } = await table("loads", { fields: "node,measured_depth,side_force,orbit_radius_rms" });
     const parts = partsOf(point.scenario.string.sections);
     const most = (/** @type {string} */ name) => say(name, Math.max(...columns[name].map(Math.abs)), 3);
-    const nodes = point.scenario.recording.nodes.map(
-      (/** @type {{node?: number, depth?: number}} */ { node, depth }) =>
-        depth ?? columns.measured_depth[columns.node.indexOf(node)],
-    );
+    const nodes = recordedAt(point.scenario, columns);
     const words = `Depth in ${unit("measured_depth").symbol}. Blue: orbit size up to ${most("orbit_radius_rms")}; orange: side force up to ${most("side_force")}. Dots: recorded nodes.`;
     const picture = this.#show("track", words);
     picture.setAttribute("aria-label", `String over depth: ${partsInWords(parts)}`);
@@ -137,9 +170,10 @@ export class Overview {
     if (!this.#node || !point.tables.includes("history")) return;
     const named = new URLSearchParams(query);
     named.set("node", this.#node);
-    // The same requests as those of the view of the motion.
     const [equilibrium] = nodeTables(point.scenario, named);
     const [cut, lines] = windowTables(point.scenario, named, this.#window);
+    // The view of the motion sends for the same orbit; for a small picture alone a part of its samples is enough.
+    if (query.get("view") !== "motion") cut[1].max_points = SAMPLES;
     const [statics, orbit, spectrum] = await Promise.all([
       table(...equilibrium),
       table(...cut),
@@ -157,7 +191,13 @@ export class Overview {
     const size = point.summary[`orbit_radius_rms_${recordedAs(point.scenario, node, measured_depth)}`];
     const words = `At ${say("measured_depth", measured_depth)}, looking downhole, in ${unit("radius").symbol}${size ? `; ${say("radius", size, 3)} rms` : ""}.`;
     const [x, y] = [shown("radius", across), shown("radius", up)];
-    drawCurves(this.#show("orbit", words), [{ x, y, colour: LINES[0] }], { isEqual: true });
+    const picture = this.#show("orbit", words);
+    const orbit = { x, y, colour: LINES[0] };
+    this.#paintTimed("orbit", (time) => {
+      const place = time === null ? [null, null] : [x, y].map((one) => valueAtTime(columns.time, one, time));
+      const dot = { x: [place[0]], y: [place[1]], colour: inks().text, isDots: true };
+      drawCurves(picture, place.includes(null) ? [orbit] : [orbit, dot], { isEqual: true });
+    });
   }
 
   /** @param {any} spectrum table */
@@ -216,6 +256,7 @@ export class Overview {
     const words = `${say("rotation_speed", least, 3)} to ${say("rotation_speed", largest, 3)} over time in s; dashed: imposed, ${say("rotation_speed", imposed, 3)}.`;
     const curve = { x: columns.time, y: shown("rotation_speed", columns[speed]), colour: LINES[0] };
     const level = Number(shown("rotation_speed", [imposed])[0]);
-    drawCurves(this.#show("bit", words), [curve], { level });
+    const picture = this.#show("bit", words);
+    this.#paintTimed("bit", (time) => drawCurves(picture, [curve], { level, at: time ?? undefined }));
   }
 }

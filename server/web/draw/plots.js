@@ -61,7 +61,7 @@ const subjects = new WeakMap();
  * @param {HTMLElement} place made by `canvas`
  * @param {any[]} traces
  * @param {any} layout what differs from the common layout; the `quantity` of an axis is what it shows, where that has a unit, its
- *   `size` the number of served units in one that is shown, where that is not the usual one, and `shows` is what a change of takes the zoom back, beside that of the axes
+ *   `size` the number of served units in one that is shown, where that is not the usual one, and `shows` is what a change of takes the zoom back, in addition to that of the axes
  * @param {AbortSignal} signal of the view: the picture is taken down with it
  */
 export async function draw(place, traces, layout, signal) {
@@ -149,7 +149,7 @@ function merged(own) {
 }
 
 /**
- * The bar beside coloured values.
+ * The bar next to coloured values.
  * @param {string} title
  */
 export function colourBar(title) {

@@ -7,7 +7,7 @@ import { BLACK, WHITE } from "./picture/colours.js";
 const DOTTED = 900;
 /** Cells at the rim, half as large, that have room for a printed value [pixels]. */
 const ROOM = { across: 46, up: 24 };
-/** Room beside and below the cells, for axes and the bar of colours [pixels]. */
+/** Room next to and below the cells, for axes and the bar of colours [pixels]. */
 const BESIDE = { across: 190, up: 80 };
 /** Free part of a range beyond the samples, so that dots at the rim are seen whole. */
 const SPARE = 0.03;
@@ -78,7 +78,7 @@ export function sampleTraces(samples, place) {
   ];
 }
 
-/** The ink that is seen beside that of a sample. @param {Sample} sample */
+/** The ink that is seen next to that of a sample. @param {Sample} sample */
 function haloOf({ ink }) {
   return ink === WHITE ? BLACK : WHITE;
 }

@@ -1,7 +1,8 @@
 // Small pictures of the overview of a point, on canvases: curves in a frame, and the string over depth.
 
-import { number, say, shown } from "../data/units.js";
+import { number, shown } from "../data/units.js";
 import { inks, LINES } from "./plots.js";
+import { HALF, inkOf, LEAST, namedParts } from "./string-track.js";
 import { h } from "../ui/dom.js";
 
 /** @typedef {{x: (number | null)[], y: (number | null)[], colour: string, isDots?: boolean}} Curve values as they are shown */
@@ -9,21 +10,6 @@ import { h } from "../ui/dom.js";
 
 /** Room for the numbers at the ends of the axes [pixels]. */
 const [LEFT, BOTTOM, TOP, RIGHT] = [46, 18, 8, 8];
-/** Least distance between two names [pixels]. */
-const LINE = 13;
-/** Names of parts, and their rank if there is no room for all; tool joints have none. @type {Record<string, [string, number]>} */
-const NAMES = {
-  bit: ["bit", 0],
-  stabilizer: ["stabilizer", 1],
-  collar: ["collar", 2],
-  drillpipe: ["drill pipe", 3],
-};
-/** Half widths of parts [pixels]. @type {Record<string, number>} */
-const HALF = { drillpipe: 3, tool_joint: 5, collar: 5, stabilizer: 9, bit: 8 };
-
-/** Least lengths of parts that are always to be seen [pixels]. @type {Record<string, number>} */
-const LEAST = { stabilizer: 3, bit: 4 };
-
 /** A canvas for a small picture. @param {string} name @param {string} [size] */
 export function smallCanvas(name, size = "") {
   return h("canvas", { class: `small-picture ${size}`, role: "img", "aria-label": name });
@@ -73,18 +59,19 @@ export function rangeOf(columns) {
  * Draws curves in a frame, with the numbers at its corners.
  * @param {HTMLCanvasElement} canvas
  * @param {Curve[]} curves
- * @param {{isEqual?: boolean, isFromZero?: boolean, level?: number}} [options] one scale for both axes; an axis from zero up; height of a dashed line
+ * @param {{isEqual?: boolean, isFromZero?: boolean, level?: number, at?: number}} [options] one scale for both axes; an axis from zero up; height of a
+ *   dashed line; place of an upright line
  */
 export function drawCurves(canvas, curves, options = {}) {
   painted(canvas, () => paintCurves(canvas, curves, options));
 }
 
-/** @param {HTMLCanvasElement} canvas @param {Curve[]} curves @param {{isEqual?: boolean, isFromZero?: boolean, level?: number}} options */
-function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, level }) {
+/** @param {HTMLCanvasElement} canvas @param {Curve[]} curves @param {NonNullable<Parameters<typeof drawCurves>[2]>} options */
+function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, level, at }) {
   const found = penOf(canvas);
   if (!found) return;
   const { pen, width, height } = found;
-  const { soft, line } = inks();
+  const { text, soft, line } = inks();
   let [x, y] = [rangeOf(curves.map((curve) => curve.x)), rangeOf(curves.map((curve) => curve.y))];
   if (level !== undefined) y = rangeOf([[...y, level]]);
   if (isFromZero) y = [0, 1.08 * y[1]];
@@ -107,6 +94,10 @@ function paintCurves(canvas, curves, { isEqual = false, isFromZero = false, leve
     pen.setLineDash([]);
   }
   for (const curve of curves) drawCurve(pen, curve, right, down);
+  if (at !== undefined && at >= x[0] && at <= x[1]) {
+    pen.strokeStyle = text;
+    strokeAlong(pen, [at, at], [y[0], y[1]], right, down);
+  }
 }
 
 /** Numbers at the ends of the axes. @param {CanvasRenderingContext2D} pen @param {{x: [number, number], y: [number, number]}} ranges @param {{width: number, height: number}} size */
@@ -155,28 +146,6 @@ function strokeAlong(pen, x, y, right, down) {
 }
 
 /**
- * Parts of the string that have a name, where there is room for it.
- * @param {Part[]} parts
- * @param {number} perMetre pixels
- * @returns {{name: string, part: Part, down: number}[]} place of the name below the top [pixels]
- */
-export function namedParts(parts, perMetre) {
-  /** @type {{name: string, part: Part, down: number}[]} */
-  const kept = [];
-  const joined = parts.filter(({ kind }) => kind in NAMES);
-  // Of joints of pipe one name is enough.
-  const single = joined.filter(
-    (part, at) => part.kind !== "drillpipe" || joined.findIndex(({ kind }) => kind === "drillpipe") === at,
-  );
-  for (const part of single.sort((a, b) => NAMES[a.kind][1] - NAMES[b.kind][1])) {
-    const down = ((part.from + part.to) / 2) * perMetre;
-    if (kept.every((other) => Math.abs(other.down - down) >= LINE))
-      kept.push({ name: NAMES[part.kind][0], part, down });
-  }
-  return kept.sort((a, b) => a.down - b.down);
-}
-
-/**
  * Draws the string over depth, with curves next to it, each from zero to its largest value.
  * @param {HTMLCanvasElement} canvas
  * @param {Part[]} parts
@@ -205,7 +174,7 @@ function paintTrack(canvas, parts, { depths, curves, nodes }) {
       Math.min(height - 6, Math.max(6, down(part * deepest))),
     );
   for (const { kind, from, to } of parts) {
-    pen.fillStyle = kind === "bit" || kind === "stabilizer" ? text : soft;
+    pen.fillStyle = inkOf(kind);
     pen.fillRect(
       middle - HALF[kind],
       down(from),
@@ -223,7 +192,7 @@ function paintTrack(canvas, parts, { depths, curves, nodes }) {
     pen.fill();
   }
   pen.strokeStyle = line;
-  pen.strokeRect(start, TOP, width - start - RIGHT, height - 2 * TOP);
+  if (curves.length) pen.strokeRect(start, TOP, width - start - RIGHT, height - 2 * TOP);
   for (const { values, colour } of curves) {
     const most = Math.max(...values.map(Math.abs)) || 1;
     pen.strokeStyle = colour;
@@ -235,12 +204,4 @@ function paintTrack(canvas, parts, { depths, curves, nodes }) {
       down,
     );
   }
-}
-
-/** Parts of a string in words. @param {Part[]} parts */
-export function partsInWords(parts) {
-  const deep = parts.filter(({ kind }) => kind !== "drillpipe" && kind !== "tool_joint");
-  const pipe = parts.find(({ kind }) => kind === "drillpipe");
-  const words = deep.map(({ kind, to }) => `${NAMES[kind][0]} to ${say("measured_depth", to)}`);
-  return [pipe && "drill pipe", ...words].filter(Boolean).join(", ");
 }

@@ -497,7 +497,7 @@ function path(pen, first, last, at) {
 }
 
 /** Least length of a direction in the corner, as a part of the whole. */
-const SHORTEST = 0.15;
+const SHORTEST = 0.5;
 
 /** Draws north, east and down in a corner. @param {Pen} pen @param {View} view @param {number} height */
 function drawCompass(pen, view, height) {
@@ -538,7 +538,7 @@ function niceStep(least) {
 }
 
 /**
- * A place beside the axis.
+ * A place next to the axis.
  * @param {{axis: Vector[], u: Vector[], v: Vector[]}} frames @param {number} node @param {number} u @param {number} v
  * @returns {Vector}
  */

@@ -1,7 +1,7 @@
 // Rows of the list of sweeps, one of which the keyboard selects.
 
 import { Pace } from "../data/pace.js";
-import { label } from "../data/units.js";
+import { label, number } from "../data/units.js";
 import { fill, h } from "../ui/dom.js";
 import { progressPart, when } from "../ui/progress.js";
 import { link } from "../ui/router.js";
@@ -130,7 +130,7 @@ function drawRow({ row, sweep, pace }) {
       h(
         "div",
         { class: "small soft" },
-        `${sweep.counts.total} ${sweep.counts.total === 1 ? "point" : "points"} `,
+        `${number(sweep.counts.total)} ${sweep.counts.total === 1 ? "point" : "points"} `,
         tags,
       ),
     ),

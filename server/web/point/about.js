@@ -172,9 +172,9 @@ export function accuracyFacts({ summary }) {
   return [
     ["Error of orbit size, promised", percent(summary.promised_error)],
     ["Error of orbit size, stated", percent(summary.whole_error)],
-    ["of it by steps", percent(summary.time_error)],
-    ["of it by the mesh", percent(summary.mesh_error)],
-    ["of it by sampling", percent(summary.sampling_error)],
+    ["by time steps", percent(summary.time_error)],
+    ["by the mesh", percent(summary.mesh_error)],
+    ["by sampling", percent(summary.sampling_error)],
     ["Mesh: error of the mean radius at rest", percent(summary.mesh_error_mean_radius)],
     ["Spread of an ensemble", percent(summary.relative_spread)],
     [

@@ -3,6 +3,7 @@
 import { largestShown, maxima } from "../data/decimation.js";
 import { number, shown, title, unit } from "../data/units.js";
 import { canvas, colourBar, draw } from "../draw/plots.js";
+import { TimeLine } from "../draw/time-line.js";
 import { h } from "../ui/dom.js";
 
 /** Columns of the map; of more snapshots each column shows the largest force of several. */
@@ -10,19 +11,15 @@ const COLUMNS = 500;
 
 /**
  * @param {import("./part.js").PointContext} context
- * @param {((time: number) => void) | null} onTime where the reader points on the map
  * @param {{heading: string, key: string}} [named] where there are several
  */
-export function contactMap(context, onTime, named) {
+export function contactMap(context, named) {
   const place = canvas(
     `Contact force over depth and time${named ? `, point ${named.heading}` : ""}`,
     named?.key ?? "contacts",
   );
   const caption = h("figcaption", {});
-  if (onTime)
-    place.addEventListener("pointclick", (event) =>
-      onTime(Number(/** @type {CustomEvent} */ (event).detail.points[0].x)),
-    );
+  new TimeLine(place, context.time, context.signal);
   return {
     element: h(
       "div",
@@ -39,7 +36,7 @@ export function contactMap(context, onTime, named) {
       const every = Math.ceil(frames.count / COLUMNS);
       const { time, rows } = maxima(frames, "normal_force", every);
       const size = unit("normal_force").size;
-      caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND}${onTime ? " Select a place to see the string at that time." : ""}`;
+      caption.textContent = `Dark: off the wall. ${every > 1 ? `Each column is the largest of ${every} snapshots. ` : ""}${BEYOND}${named ? "" : " Select a place to see the string at that time."}`;
       await draw(
         place,
         [

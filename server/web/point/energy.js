@@ -2,6 +2,7 @@
 
 import { label, number, say, unit } from "../data/units.js";
 import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
+import { TimeLine } from "../draw/time-line.js";
 import { fill, h } from "../ui/dom.js";
 
 const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
@@ -71,6 +72,7 @@ export function floorOf(changes) {
 export function energy(context) {
   const bars = canvas("Energy by account at the end of the run", "bars", "low");
   const curves = canvas("Energy over time", "curves");
+  const line = new TimeLine(curves, context.time, context.signal);
   const caption = h("figcaption", {});
 
   async function redraw() {
@@ -90,7 +92,7 @@ export function energy(context) {
       h("h2", {}, "By account"),
       h("figure", {}, bars, caption),
       h("h2", {}, "Over time"),
-      h("figure", {}, curves),
+      h("figure", {}, curves, line.reading),
     ),
     draw: redraw,
     request: () => ({ asked: [{ table: "energy" }], python: "energy = point.energy().to_pandas()" }),
@@ -154,6 +156,7 @@ function drawCurves(place, columns, signal) {
       type: "scatter",
       mode: "lines",
       name: words,
+      symbol,
       x: columns.time,
       y: scaled(sizes, size),
       line: { color: LINES[order % LINES.length], dash, width: 1.4 },

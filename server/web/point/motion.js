@@ -1,6 +1,7 @@
 // The motion of a recorded node: a window brushed in its history, and orbit, full spectrum and statistics of that window.
 
 import { Problem } from "../data/api.js";
+import { valueAtTime } from "../data/at-time.js";
 import { nodeTables, rotationTable, windowTables } from "../data/motion-requests.js";
 import { biasOver, FEWEST, orbitStatistics, recordedAs, STATISTICS } from "../data/statistics.js";
 import { number, say, shown, unit } from "../data/units.js";
@@ -16,6 +17,7 @@ import {
   spectrumTrace,
 } from "../draw/orbit.js";
 import { adjust, canvas, draw, LINES } from "../draw/plots.js";
+import { timeDots, TimeLine } from "../draw/time-line.js";
 import { debounced, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -56,6 +58,8 @@ class NodeMotion {
   #rotation = canvas("Rotation speed and torque of the node", "rotation", "low");
   #orbit = canvas("Orbit of the node", "orbit");
   #spectrum = canvas("Full spectrum of the node", "spectrum");
+  #historyLine;
+  #rotationLine;
   #rotationName = h("h2", {}, "Rotation speed and torque");
   #wall = h("span", {});
   #shaded = h("span", { hidden: true }, " Shaded: frequencies that the time steps do not resolve.");
@@ -87,6 +91,9 @@ class NodeMotion {
       (from, to) => this.#choose(from, to),
     );
     this.#lines = new SpectralLines(context, this.choices);
+    this.#historyLine = new TimeLine(this.#history, context.time, signal);
+    this.#rotationLine = new TimeLine(this.#rotation, context.time, signal);
+    timeDots(this.#orbit, context.time, (time) => this.#dotsAt(time), signal);
     this.#pictures = this.#picturesPart();
     this.#rested = debounced(() => this.#lookAtDragged(), REST_MS, signal);
     dragWindow(
@@ -111,7 +118,8 @@ class NodeMotion {
       panel(
         "Displacement",
         this.#history,
-        "Drag across the history to choose a window; orbit, spectrum and statistics follow.",
+        "Drag across the history to choose a window; orbit, spectrum and statistics follow. Select a place, or drag the knob on the axis, for the time at which all views are read: a dot shows it on the orbit.",
+        this.#historyLine.reading,
       ),
       h("div", { style: "height:1rem" }),
       h(
@@ -133,8 +141,27 @@ class NodeMotion {
         h("div", { class: "panel" }, this.#lines.element),
       ),
       h("div", { style: "height:1rem" }),
-      h("div", { class: "panel" }, this.#rotationName, h("figure", {}, this.#rotation)),
+      h(
+        "div",
+        { class: "panel" },
+        this.#rotationName,
+        h("figure", {}, this.#rotation, this.#rotationLine.reading),
+      ),
     );
+  }
+
+  /** Place of the node in its orbit at a time: from the samples of the window, or else from those of the whole history. @param {number} time */
+  #dotsAt(time) {
+    const tables = this.#dragged ? [] : [this.#windowed?.cut, this.#whole];
+    for (const table of tables) {
+      if (!table) continue;
+      const { columns } = table;
+      const [u, v] = [columns.u, columns.v].map((values) => valueAtTime(columns.time, values, time));
+      if (u === null || v === null) continue;
+      const { across, up } = seenDownhole([u], [v], this.#place().lowSide);
+      return [{ x: Number(shown("radius", across)[0]), y: Number(shown("radius", up)[0]) }];
+    }
+    return [];
   }
 
   /** Keeps a choice in the link and draws by it. @param {string} name @param {string} value */

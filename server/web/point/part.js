@@ -14,6 +14,7 @@ import { nodeInLink, unrecordedNode } from "../data/motion-requests.js";
  * @property {number[]} [verified] ordinals of the sweep's verified points; absent in comparisons
  * @property {() => Promise<any>} diagnosis class, findings, and causes of spectral lines
  * @property {(name: string, query?: Record<string, any>) => Promise<any>} table a table of the point's result
+ * @property {import("../draw/time-cursor.js").TimeCursor} time at which views over time are read
  * @property {() => void} drawn says that what is shown is of other requests than before
  * @property {AbortSignal} signal
  */
@@ -41,9 +42,9 @@ export function sayUnrecorded(scenario, query) {
 }
 
 /** Choices that other views of the point, and other points, take over. */
-const CARRIED = ["node", "from", "to"];
+const CARRIED = ["node", "from", "to", "time"];
 
-/** @param {URLSearchParams} query of the link @returns {Record<string, string>} node and window, as far as the link has them */
+/** @param {URLSearchParams} query of the link @returns {Record<string, string>} node, window and time, as far as the link has them */
 export function carried(query) {
   return Object.fromEntries(
     CARRIED.flatMap((name) => (query.has(name) ? [[name, query.get(name) ?? ""]] : [])),

@@ -1,9 +1,12 @@
 // Quantities over depth, side by side with one depth cursor.
 
 import { roomyRange } from "../data/columns.js";
+import { nodeTables } from "../data/motion-requests.js";
+import { partsOf } from "../data/string-parts.js";
 import { label, meaning, number, say, shown, title, unit } from "../data/units.js";
 import { DepthCursor, nearest } from "../draw/depth-cursor.js";
-import { canvas, draw, LINES } from "../draw/plots.js";
+import { canvas, draw, laidOut, LINES } from "../draw/plots.js";
+import { AXIS, recordedAt, sayTrack, TRACK, trackAxis, trackTraces } from "../draw/string-track.js";
 import { h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -84,15 +87,21 @@ export function scrolled(place) {
   );
 }
 
+/** A string to be drawn next to profiles, and depths of recorded nodes [m]. @typedef {{parts: import("../data/string-parts.js").Part[], nodes: number[]}} Track */
+
 /**
  * Several quantities side by side over one depth axis that grows downwards.
  * @param {HTMLElement} place
  * @param {string[]} names
  * @param {{table: (name: string) => any, colour: string, dash: string, name: string}[]} points tables by quantity
+ * @param {Track | null} track the string at the left, on the same axis
  * @param {AbortSignal} signal
  */
-export async function drawProfiles(place, names, points, signal) {
-  place.style.minWidth = `${names.length * LEAST_WIDTH}px`;
+export async function drawProfiles(place, names, points, track, signal) {
+  const [room, margins] = [track ? TRACK : 0, { l: 64, r: 12 }];
+  place.style.minWidth = `${room + names.length * LEAST_WIDTH}px`;
+  await laidOut(place, signal);
+  const start = room / Math.max(1, place.clientWidth - margins.l - margins.r);
   const traces = names.flatMap((name, column) =>
     points.flatMap((point, order) => {
       const table = point.table(name);
@@ -125,16 +134,22 @@ export async function drawProfiles(place, names, points, signal) {
     traces.flatMap(({ y }) => y),
     ROOM,
   );
-  const width = 1 / names.length;
+  const width = (1 - start) / names.length;
   const gap = Math.min(0.03, width / 6);
+  const margin = { ...margins, t: points.length > 1 ? 40 : 12, b: 60 };
+  const [shallowest, deepest] = depths ?? [0, 1];
+  const height = place.clientHeight - margin.t - margin.b;
+  const perMetre = height / ((deepest - shallowest) * unit("measured_depth").size);
   const layout = {
     hovermode: "y",
-    margin: { l: 64, r: 12, t: points.length > 1 ? 40 : 12, b: 60 },
+    margin,
+    ...(track ? trackAxis(start) : {}),
     yaxis: {
       title: title("measured_depth"),
       quantity: "measured_depth",
       ...(depths ? { range: depths.toReversed() } : { autorange: "reversed" }),
       zeroline: false,
+      ...(track ? { anchor: AXIS } : {}),
     },
     ...Object.fromEntries(
       names.map((name, column) => [
@@ -143,8 +158,8 @@ export async function drawProfiles(place, names, points, signal) {
           title: wrapped(title(name)),
           quantity: name,
           domain: [
-            column * width + (column ? gap : 0),
-            (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2),
+            start + column * width + (column ? gap : 0),
+            start + (column + 1) * width - (column === names.length - 1 ? 0 : gap / 2),
           ],
           anchor: "y",
           nticks: 5,
@@ -153,7 +168,8 @@ export async function drawProfiles(place, names, points, signal) {
       ]),
     ),
   };
-  return draw(place, traces, layout, signal);
+  const string = track ? trackTraces(track.parts, track.nodes, perMetre) : [];
+  return draw(place, [...traces, ...string], layout, signal);
 }
 
 /** @param {string} text */
@@ -208,24 +224,37 @@ export function profiles(context) {
     reading(ticks.names(), (name) => tables[tableOf(name)], depth, points),
   );
   const begin = generations();
+  const { scenario } = context.point;
+  const parts = partsOf(scenario.string.sections);
 
   async function redraw() {
     const isNewest = begin();
     const names = ticks.names();
     const needed = new Set(names.map(tableOf));
-    await Promise.all([...needed].map(async (table) => (tables[table] ??= await context.table(table))));
+    const [statics] = await Promise.all([
+      // The overview reads the same.
+      context.table(...nodeTables(scenario, context.query)[0]),
+      ...[...needed].map(async (table) => (tables[table] ??= await context.table(table))),
+    ]);
     if (!isNewest()) return;
     await drawProfiles(
       place,
       names,
       [{ table: (name) => tables[tableOf(name)], colour: LINES[0], dash: "solid", name: "" }],
+      { parts, nodes: recordedAt(scenario, statics.columns) },
       context.signal,
     );
     cursor.follow(nodeDepths(names, (name) => tables[tableOf(name)]));
   }
 
   return {
-    element: h("div", {}, ticks.element, h("figure", {}, scrolled(place)), cursor.element),
+    element: h(
+      "div",
+      {},
+      ticks.element,
+      h("figure", {}, scrolled(place), h("figcaption", {}, `${sayTrack(parts)} Dots: recorded nodes.`)),
+      cursor.element,
+    ),
     draw: redraw,
     request: () => {
       const asked = profileTables(ticks.names()).map(({ table, fields }) => ({
@@ -259,7 +288,7 @@ export function nodeDepths(names, table) {
  * @param {string[]} names
  * @param {(name: string) => any} table of a quantity
  * @param {number} depth in the unit in which it is shown
- * @param {any[]} points points of the picture that the mouse is at; elsewhere the values are those of the nearest depth
+ * @param {any[]} points what the mouse is at in the picture; elsewhere the values are those of the nearest depth
  */
 export function reading(names, table, depth, points) {
   const words = names

@@ -5,6 +5,7 @@ import { keptWindow } from "../data/motion-requests.js";
 import { frames, snapshotsOf } from "../data/snapshots.js";
 import { number, say, shown, title } from "../data/units.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
+import { TimeLine } from "../draw/time-line.js";
 import { h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { python, pythonNode } from "../ui/snippets.js";
@@ -172,13 +173,14 @@ function sayTorqueOnBit({ scenario }) {
 /** @param {import("./part.js").PointContext} context */
 export function rotation(context) {
   const place = canvas("Rotation speed and torque at bit and top", "rotation");
+  const cursor = new TimeLine(place, context.time, context.signal);
   const caption = h("figcaption", {});
   const begin = generations();
   const element = h(
     "div",
     { class: "panel" },
     h("h2", {}, "Rotation speed and torque at bit and top"),
-    h("figure", {}, place, caption),
+    h("figure", {}, place, caption, cursor.reading),
   );
   return {
     element,

@@ -8,15 +8,12 @@ import { nodeFrames } from "../data/well-frames.js";
 import { scaleParts, scaleWords } from "../draw/colour-scale.js";
 import { SharedView } from "../draw/shared-view.js";
 import { KEYS } from "../draw/string-scene.js";
-import { choice, debounced, fill, h } from "../ui/dom.js";
+import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { BEYOND } from "./contacts.js";
 import { colourName, EXAGGERATIONS, PlayerChoices, SPEEDS } from "./player-choices.js";
 import { coloursOf } from "./string-colours.js";
 import { saveStrings } from "./string-file.js";
-
-/** Rest of the time before the link holds it. */
-const REST_MS = 200;
 
 /** @typedef {import("../data/snapshots.js").Frames} Frames */
 /** @typedef {import("./player-choices.js").Strings} Strings */
@@ -31,6 +28,11 @@ function lastTime({ first, count, interval }) {
   return first + (count - 1) * interval;
 }
 
+/** Words of a magnification. @param {number} factor */
+function timesMore(factor) {
+  return factor === 1 ? "no more" : `${factor} times more`;
+}
+
 export class StringPlayer {
   #choices;
   /** @type {Actor[]} */
@@ -38,7 +40,7 @@ export class StringPlayer {
   #onLoad;
   #keep;
   #signal;
-  #keepTime;
+  #cursor;
   #view;
   #controls = h("div", { class: "controls" });
   #wrong = h("p", { class: "wrong", role: "alert" });
@@ -55,11 +57,11 @@ export class StringPlayer {
     step: "any",
     value: 0,
     style: "flex:1;min-width:8rem",
-    oninput: () => this.stopAt(Number(this.#slider.value)),
+    oninput: () => this.#cursor.move(Number(this.#slider.value)),
   });
   #isPlaying = false;
   #time = 0;
-  /** Time of the link, until its snapshots have arrived [s]. @type {number | null} */
+  /** Time of the cursor, until its snapshots have arrived [s]. @type {number | null} */
   #awaited = null;
   /** Time of the last frame that was played [ms]. */
   #last = 0;
@@ -70,22 +72,15 @@ export class StringPlayer {
    * @param {(actors: Actor[], span: {from: number, to: number}) => Promise<unknown>} onLoad called once the snapshots of a window are loaded
    */
   constructor(strings, onLoad) {
-    const { query, keep, signal } = strings[0].context;
+    const { query, keep, time, signal } = strings[0].context;
     this.#choices = new PlayerChoices(strings);
     this.#onLoad = onLoad;
     this.#keep = keep;
     this.#signal = signal;
+    this.#cursor = time;
     const geometries = strings.map(({ statics }) => nodeFrames(statics));
     // Several strings are seen from one place: that of the first one's section.
     this.#view = new SharedView(geometries[0].axis, { query, keep, signal });
-    this.#keepTime = debounced(
-      () =>
-        this.#isPlaying ||
-        this.#awaited !== null ||
-        keep({ time: this.#time > this.#first ? String(Number(this.#time.toFixed(4))) : null }),
-      REST_MS,
-      signal,
-    );
     this.#actors = strings.map((one, order) => ({
       ...one,
       geometry: geometries[order],
@@ -99,6 +94,7 @@ export class StringPlayer {
       ),
     }));
     signal.addEventListener("abort", () => this.#setPlaying(false), { once: true });
+    time.follow((moved) => this.#follow(moved), signal);
     this.element = h(
       "div",
       {},
@@ -183,11 +179,8 @@ export class StringPlayer {
       choice(
         "Motion about the mean",
         [
-          ["", `as it suits${this.#moving.length ? `, ${this.#magnification} times more` : ""}`],
-          ...MAGNIFICATIONS.map(
-            (step) =>
-              /** @type {[string, string]} */ ([String(step), step === 1 ? "no more" : `${step} times more`]),
-          ),
+          ["", `as it suits${this.#moving.length ? `, ${timesMore(this.#magnification)}` : ""}`],
+          ...MAGNIFICATIONS.map((step) => /** @type {[string, string]} */ ([String(step), timesMore(step)])),
         ],
         String(magnification ?? ""),
         set("motion", show),
@@ -258,12 +251,11 @@ export class StringPlayer {
   /** Loads the snapshots of the window that the link has. */
   async load() {
     const mine = ++this.#generation;
-    const { span, query } = this.#choices;
+    const { span } = this.#choices;
     this.#wrong.textContent = "";
     this.#drawControls();
     this.#setPlaying(false);
-    const asked = Number(query.get("time") ?? NaN);
-    this.#awaited = Number.isFinite(asked) ? asked : null;
+    this.#awaited = this.#cursor.time;
     /** @type {(Frames | undefined)[]} */
     const arrived = this.#actors.map(() => undefined);
     let painted = Promise.resolve();
@@ -425,11 +417,18 @@ export class StringPlayer {
     return (node) => (speed * Math.PI * this.#time) / 30 + valueAt(motion, "theta_z", node, this.#time);
   }
 
-  /** Stops at a time. @param {number} time [s] */
-  stopAt(time) {
-    this.#awaited = null;
+  /** Stops at the time of the cursor when something else has moved it. @param {number | null} time [s] */
+  #follow(time) {
+    if (time === null || time === this.#time) return;
     this.#setPlaying(false);
+    this.#awaited = this.#moving.length && (time <= this.#end || !this.#isArriving) ? null : time;
     this.#go(time);
+  }
+
+  /** Takes the cursor along. @param {number} time [s] */
+  #lead(time) {
+    this.#go(time);
+    this.#cursor.move(this.#time);
   }
 
   /** @param {number} to [s] */
@@ -440,7 +439,6 @@ export class StringPlayer {
     this.#slider.setAttribute("aria-valuetext", say("time", this.#time));
     this.#clock.textContent = `${this.#time.toFixed(2)} s`;
     for (const { scene } of this.#actors) scene.paint();
-    this.#keepTime();
   }
 
   /** @param {boolean} will */
@@ -448,10 +446,7 @@ export class StringPlayer {
     if (will === this.#isPlaying || (will && !this.#moving.length)) return;
     this.#isPlaying = will;
     this.#play.textContent = will ? "Pause" : "Play";
-    if (!will) {
-      this.#keepTime();
-      return;
-    }
+    if (!will) return;
     this.#awaited = null;
     if (this.#time >= this.#end - 1e-9 && !this.#isArriving) this.#time = this.#first;
     this.#last = performance.now();
@@ -463,7 +458,7 @@ export class StringPlayer {
     if (!this.#isPlaying || this.#signal.aborted) return;
     const next = this.#time + ((now - this.#last) / 1000) * this.#choices.speed;
     this.#last = now;
-    this.#go(next);
+    this.#lead(next);
     // What has arrived may end before the window does.
     if (next >= this.#end && !this.#isArriving) this.#setPlaying(false);
     else requestAnimationFrame((later) => this.#step(later));

@@ -27,7 +27,7 @@ export function string(context) {
     const there = await snapshotsOf(context);
     if (!there) return drawWithout();
     const statics = (await context.table("statics")).columns;
-    const map = contactMap(context, (time) => player?.stopAt(time));
+    const map = contactMap(context);
     names = ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"].filter((name) =>
       there.names.includes(name),
     );

@@ -6,6 +6,7 @@ import { latest } from "../data/latest.js";
 import { isUnsettled } from "../data/statistics.js";
 import { say, sayParameters } from "../data/units.js";
 import { Overview } from "../draw/overview.js";
+import { TimeCursor } from "../draw/time-cursor.js";
 import { fill, h } from "../ui/dom.js";
 import { waysToCompare } from "../ui/last-comparison.js";
 import { attend } from "../ui/notices.js";
@@ -78,11 +79,12 @@ export async function show(main, route, signal) {
         link(["sweeps", id, "points", ordinal], { view: tab.dataset.view, ...carried(query) }),
       );
     fill(heading, headingPart({ ...place, query }, point));
+    overview.follow(carried(query));
   };
-  follow(route.query);
   const context = contextOf(place, point, biases, { drawn, follow }, signal);
   const judgement = headline(point, biases.orbitSize(Number(ordinal)), context.diagnosis(), signal);
   const overview = new Overview(context, ["sweeps", id, "points", ordinal]);
+  follow(route.query);
   const part = make(context);
   fill(
     main,
@@ -118,19 +120,21 @@ function contextOf({ ordinal, path, query: asked }, point, biases, { drawn, foll
   const query = new URLSearchParams(asked);
   /** @type {Promise<any> | undefined} */
   let diagnosis;
+  const keepChoices = (/** @type {Record<string, string | null>} */ changes) => {
+    for (const [key, value] of Object.entries(changes)) {
+      if (value === null) query.delete(key);
+      else query.set(key, value);
+    }
+    keep(changes);
+    follow(query);
+    drawn();
+  };
   return {
     point,
     path,
     query,
-    keep: (changes) => {
-      for (const [key, value] of Object.entries(changes)) {
-        if (value === null) query.delete(key);
-        else query.set(key, value);
-      }
-      keep(changes);
-      follow(query);
-      drawn();
-    },
+    keep: keepChoices,
+    time: new TimeCursor({ query, keep: keepChoices }, signal),
     bias: (name) => biases.beside(name, Number(ordinal)),
     measured: (number) => biases.orbitSize(number),
     verified: biases.verified,

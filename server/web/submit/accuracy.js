@@ -4,7 +4,7 @@ import { inputUnit } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { numberBox, wordBox } from "./fields.js";
 
-/** Ways to give an accuracy besides its names. @type {[string, string][]} */
+/** Ways to give an accuracy in addition to its names. @type {[string, string][]} */
 const WAYS = [
   ["", "the scenario's"],
   ["draft", "draft"],

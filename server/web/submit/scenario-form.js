@@ -113,7 +113,7 @@ export class ScenarioForm {
     fill(this.#body, this.#section(this.#schemas.Scenario, this.#scenario, ""));
   }
 
-  /** The schema of a reference, or of one beside `null`, with the description nearest to the field. @param {any} schema @returns {any} */
+  /** The schema of a reference, or of one next to `null`, with the description nearest to the field. @param {any} schema @returns {any} */
   #resolved(schema) {
     const choices = (schema.oneOf ?? schema.anyOf)?.filter((/** @type {any} */ one) => one.type !== "null");
     const inner = schema.$ref

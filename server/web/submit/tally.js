@@ -1,6 +1,9 @@
 // The string of a new sweep as tables: its sections from the top (the tally), gauges and unbalance masses.
 
+import { partsOf } from "../data/string-parts.js";
 import { inputUnit, number, say } from "../data/units.js";
+import { drawTrack, smallCanvas } from "../draw/small-pictures.js";
+import { partsInWords } from "../draw/string-track.js";
 import { h } from "../ui/dom.js";
 import { numberBox, wordBox } from "./fields.js";
 import { readersNumber } from "./entries.js";
@@ -116,7 +119,7 @@ export function materialName(material) {
 export function stringFields(edited) {
   /** @type {any[]} */
   const sections = edited.value(SECTIONS) ?? [];
-  const below = [...ownMaterials(sections, edited), lengthLine(sections, edited)];
+  const below = [...ownMaterials(sections, edited), lengthLine(sections, edited), picturePart(sections)];
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
     texts: (/** @type {any[]} */ rows) =>
@@ -185,6 +188,15 @@ function materialLine(path, heading, material, edited) {
     boxes,
     wordBox(`${heading}: grade`, grades, material.grade ?? "", (grade) => set("grade", grade || undefined)),
   );
+}
+
+/** The string as results show it, so that a wrong length or order is seen before it is computed. @param {any[]} sections */
+function picturePart(sections) {
+  if (!sections.length || !lowerEnds(sections).every(Number.isFinite)) return h("p", { hidden: true });
+  const parts = partsOf(sections);
+  const picture = smallCanvas(`String over depth: ${partsInWords(parts)}`);
+  drawTrack(picture, parts, { depths: [], curves: [], nodes: [] });
+  return picture;
 }
 
 /** Length of the string next to the depth to which its survey reaches. @param {any[]} sections @param {import("./fields.js").Edited} edited */

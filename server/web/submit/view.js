@@ -25,7 +25,7 @@ import { surveyField } from "./survey-field.js";
 import { isTally, STRING, stringFields } from "./tally.js";
 import { changeOf, object, span, Unreadable, written } from "./values.js";
 
-/** Characters of a request that a link may hold; a longer one is held beside it. */
+/** Characters of a request that a link may hold; a longer one is held next to it. */
 const LINKED = 4000;
 /** Member of the link in the place of such a request. */
 const HELD = "held";

@@ -4,7 +4,7 @@
 const [CHARACTER, MARGINS] = [6.6, { l: 80, r: 150 }];
 /** Longest line of a name, in characters, and the least distance of axes whose names have such lines [pixels]. */
 const [LINE, LEAST_APART] = [16, 118];
-/** Height of a line below the axes, and of what is there besides, the value at the end of the axis among it [pixels]. */
+/** Height of a line below the axes, and of all else below them, such as the value at the end of the axis [pixels]. */
 export const LINE_PX = 16;
 const BELOW = 44;
 

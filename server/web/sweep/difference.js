@@ -356,7 +356,7 @@ class Difference {
   }
 
   /**
-   * Names the parameters that differ besides the results: across and up they are the same, and all others of a slice are the same at any
+   * Names the parameters that differ in addition to the results: across and up they are the same, and all others of a slice are the same at any
    * of its points.
    * @param {HTMLElement} place
    * @param {Pair} pair any of the pairs

@@ -1,12 +1,12 @@
 // A sweep: its state with what can be done to it, and its points as maps, clouds, sensitivities, a table and failures.
 
 import { follow, get, isFinal, send } from "../data/api.js";
-import { Biases } from "../data/biases.js";
+import { Biases, sayWorst } from "../data/biases.js";
 import { Depths } from "../data/depths.js";
 import { Pace } from "../data/pace.js";
 import { hasNotBegun, sweepsBefore } from "../data/queue.js";
 import { SweepTable, sweptBy } from "../data/sweep-table.js";
-import { label, nodeOfColumn, say } from "../data/units.js";
+import { label, nodeOfColumn } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend, reported, notice } from "../ui/notices.js";
 import { progressPart, when } from "../ui/progress.js";
@@ -350,13 +350,7 @@ function headPart(sweep, { pace, before }, act, change) {
       ),
     ),
     h("div", { "aria-live": "off" }, progressPart(sweep, pace, before)),
-    worst &&
-      h(
-        "p",
-        { class: "small" },
-        `Verified against reference runs: worst bias of orbit size ${say("bias_x", 100 * worst.bias, 2)} % at point ${worst.ordinal}`,
-        worst.promised ? ` (promised: ${say("bias_x", 100 * worst.promised, 2)} %).` : ".",
-      ),
+    worst && h("p", { class: "small" }, sayWorst(worst)),
     warningsPart(warnings),
     sweep.waiting_for && h("p", { class: "wrong" }, `${sweep.waiting_for.reason}.`),
     h("div", { style: "height:.8rem" }),

@@ -358,7 +358,7 @@ def test_a_brushed_window_gives_the_statistics_of_the_service(opened: Opens, nam
     expect(shown).to_have_text(f"{float(f'{1e3 * size:.4g}'):g} mm")
 
 
-def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep) -> None:
+def test_lines_stand_next_to_the_modes_of_the_service(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}/points/1?view=motion&node=49&from=0&to=0.5")
     modes = named.point(1).modes(to_hz=20.0)["modes"]
     expect(page.get_by_text(f"{len(modes)} modes were found up to 20 Hz")).to_be_visible(timeout=60_000)
@@ -376,7 +376,7 @@ def test_lines_stand_beside_the_modes_of_the_service(opened: Opens, named: Sweep
             assert re.fullmatch(r"no cause found|\d+ \N{MULTIPLICATION SIGN} .*", text), text
 
 
-def test_biases_stand_beside_the_numbers_that_they_touch(opened: Opens, client: Client) -> None:
+def test_biases_stand_next_to_the_numbers_that_they_touch(opened: Opens, client: Client) -> None:
     axes: dict[str, Axis] = {"flow_rate": [0.01, 0.04], "mud_density": [1300, 1700]}
     verified = client.submit("paper-200m", set=SHORT, axes=axes, verify=2).wait(timeout=180.0)
     table = verified.verification()
@@ -483,7 +483,7 @@ def test_a_change_is_made_in_the_form_of_the_schema(opened: Opens) -> None:
     stress.fill("3.5")
     until(page, lambda: requested(page).get("set") == {"mud.yield_stress": 3.5})
     expect(scenario.get_by_text("The scenario has")).to_be_visible()
-    # Sections are rows of a table beside the schema's fields.
+    # Sections are rows of a table next to the schema's fields.
     scenario.get_by_text("String: tally, gauges, unbalance").click()
     diameter = scenario.get_by_label("Outer diameter of section 3", exact=True)
     diameter.fill("0.16")

@@ -102,7 +102,7 @@ def test_a_failed_point_of_a_comparison_says_why(opened: Opens, named: Sweep, cl
     expect(page.get_by_text(f"it failed ({error.kind}): {error.reason}")).to_be_visible()
 
 
-def test_an_unknown_point_of_a_link_is_named_beside_the_others(
+def test_an_unknown_point_of_a_link_is_named_next_to_the_others(
     opened: Opens, named: Sweep, troubles: list[str]
 ) -> None:
     unknown = "01a00000-0000-7000-8000-000000000000:1"
@@ -250,7 +250,7 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
     expected = []
     for point in (named.point(1), named.point(8)):
         elements = np.array(point.profile()["friction_coefficient"])
-        # At a node the mean of both elements beside it.
+        # At a node the mean of both elements next to it.
         expected.append(np.concatenate([elements[:1], (elements[1:] + elements[:-1]) / 2, elements[-1:]]))
     shown = [float(text) for text in ends.all_text_contents()]
     assert shown == pytest.approx([min(map(min, expected)), max(map(max, expected))], rel=1e-2)

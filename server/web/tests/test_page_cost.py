@@ -19,7 +19,7 @@ def study(client: Client) -> Sweep:
     return client.submit("paper-200m", set=changes, axes={"flow_rate": [0.01]}, name="study").wait(timeout=300.0)
 
 
-def test_rows_of_a_cost_study_are_drawn_beside_predicted_times(opened: Opens, study: Sweep) -> None:
+def test_rows_of_a_cost_study_are_drawn_next_to_predicted_times(opened: Opens, study: Sweep) -> None:
     report = study.point(1).cost()
     page = opened(f"#/sweeps/{study.id}/points/1?view=about")
     panel = page.get_by_role("region", name="What accuracy costs")

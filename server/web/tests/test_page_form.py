@@ -102,6 +102,8 @@ def test_sections_are_changed_inserted_and_removed(opened: Opens) -> None:
     tally = page.get_by_role("group", name="Tally")
     expect(tally.locator("tbody tr")).to_have_count(8)
     expect(tally).to_contain_text("The string is 200 m long")
+    # It is drawn as its results will show it.
+    expect(tally.get_by_role("img", name=re.compile("String over depth: .*bit to 200 m"))).to_be_visible()
     # One number is one change, which may be varied just as well.
     enter(page.get_by_label("Outer diameter of section 3", exact=True), "0.165")
     until(page, lambda: changes(page) == {"string.sections[2].outer_diameter": 0.165})

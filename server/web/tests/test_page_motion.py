@@ -6,6 +6,7 @@ import contextlib
 import json
 import re
 from typing import Literal
+from urllib.parse import parse_qs
 
 import numpy as np
 import pytest
@@ -260,3 +261,82 @@ def test_the_string_moves_before_all_snapshots_have_arrived(opened: Opens, serve
     until(page, lambda: clock(page) == pytest.approx(4.0))
     expect(page.locator(".scale")).to_contain_text("torque")
     assert "time=4" in page.url
+
+
+def test_one_time_cursor_moves_all_views_of_a_point(opened: Opens, recorded: Sweep) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=string")
+    picture = scene(page)
+    contacts = drawn(page, "Contact force over depth and time")
+    turning = drawn(page, "Rotation speed and torque at bit and top")
+    lines = {name: page.get_by_role("slider", name=f"Time cursor: {name}") for name in ("Contact", "Rotation")}
+    assert "time=" not in page.url
+
+    def times() -> list[float]:
+        moved = [line.get_attribute("aria-valuenow") for line in lines.values()]
+        return [clock(page), *(float(value or 0) for value in moved)]
+
+    def at(expected: float, tolerance: float = 1e-9) -> bool:
+        return all(abs(time - expected) <= tolerance + 0.005 for time in times())
+
+    # The player's slider takes the lines along.
+    page.get_by_label("Time", exact=True).fill("0.3")
+    until(page, lambda: at(0.3))
+    until(page, lambda: "time=0.3" in page.url)
+    then = pixels(picture)
+    # A line that is dragged takes the player along, and the values at its time are said.
+    turning.scroll_into_view_if_needed()
+    box = turning.locator(".area").first.bounding_box()
+    start = lines["Rotation"].bounding_box()
+    assert box is not None
+    assert start is not None
+    page.mouse.move(start["x"] + start["width"] / 2, start["y"] + start["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.25 * box["width"], box["y"] + 20, steps=4)
+    page.mouse.up()
+    until(page, lambda: at(0.13, 0.02))
+    until(page, lambda: pixels(picture) != then)
+    expect(page.get_by_text(re.compile(r"^At 0\.1\d* s: speed, bit -?[\d.]+ rad/s · torque, bit"))).to_be_visible()
+    # Arrow keys move it by small steps.
+    before = clock(page)
+    lines["Contact"].focus()
+    page.keyboard.press("PageUp")
+    until(page, lambda: clock(page) > before)
+    until(page, lambda: at(clock(page)))
+    # So does a click in a picture over time.
+    contacts.scroll_into_view_if_needed()
+    area = contacts.locator(".area").first.bounding_box()
+    assert area is not None
+    page.mouse.click(area["x"] + 0.8 * area["width"], area["y"] + 0.5 * area["height"])
+    until(page, lambda: at(0.4, 0.02))
+    chosen = clock(page)
+    until(page, lambda: abs(float(parse_qs(page.url.partition("?")[2])["time"][0]) - chosen) < 0.006)
+    # Another view of the point is at the same time, with a dot on the orbit.
+    page.get_by_role("link", name="Orbit, history, spectrum").click()
+    orbit = drawn(page, "Orbit of node")
+    history = page.get_by_role("slider", name="Time cursor: History of node")
+    until(page, lambda: abs(float(history.get_attribute("aria-valuenow") or 0) - chosen) < 0.006)
+    expect(orbit.locator(".time-dots i")).to_have_count(1)
+    place = orbit.locator(".time-dots i").bounding_box()
+    history.focus()
+    page.keyboard.press("PageDown")
+    until(page, lambda: orbit.locator(".time-dots i").bounding_box() != place)
+    page.keyboard.press("Home")
+    until(page, lambda: re.search(r"time=0(&|$)", page.url) is not None)
+    page.get_by_role("link", name="Spectrogram").click()
+    drawn(page, "Spectrogram of node")
+    spectrogram = page.get_by_role("slider", name="Time cursor: Spectrogram")
+    expect(spectrogram).to_have_attribute("aria-valuetext", "0 s")
+
+
+def test_compared_points_are_read_at_one_time(opened: Opens, sweep: Sweep) -> None:
+    points = f"{sweep.id}:1,{sweep.id}:2"
+    page = opened(f"#/compare?points={points}&view=history&time=0.3")
+    drawn(page, "Histories")
+    line = page.get_by_role("slider", name="Time cursor: Histories")
+    expect(line).to_have_attribute("aria-valuenow", "0.3")
+    expect(page.get_by_text(re.compile(r"^At 0\.3 s: \S.* mm · \S.* mm"))).to_be_visible()
+    line.focus()
+    page.keyboard.press("PageUp")
+    until(page, lambda: "time=0.32" in page.url)
+    page.get_by_role("link", name="Orbits").click()
+    expect(drawn(page, "Orbits").locator(".time-dots i")).to_have_count(2)

@@ -292,6 +292,29 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
     until(page, lambda: float(depths[int(cursor.input_value())]) == pytest.approx(100.0, abs=10.0))
 
 
+def test_the_string_is_drawn_next_to_profiles_on_their_axis(opened: Opens, sweep: Sweep) -> None:
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=profiles&profiles=effective_tension,torque")
+    picture = drawn(page, "Profiles over measured depth")
+    words = written(picture)
+    bit = next(word for word in words if word["text"] == "bit")
+    # It stands between the numbers of the depth, which grow downwards, and the first profile.
+    numbers = [word for word in words if word["right"] < bit["left"] and word["text"].isdigit()]
+    depths = [float(word["text"]) for word in sorted(numbers, key=lambda word: word["top"])]
+    assert len(depths) > 2
+    assert depths == sorted(depths)
+    assert bit["right"] < min(word["left"] for word in words if "tension" in word["text"])
+    bits = "({ picture }) => picture.traces.find(({ name }) => name === 'bit').y"
+    assert picture.evaluate(bits)[0] == pytest.approx(sweep.point(1).statics()["measured_depth"][-1], abs=1.0)
+    # A zoom along the depth leaves its width.
+    width = "({ picture }) => picture.axis('xaxis0').range"
+    before = picture.evaluate(width)
+    picture.locator(".area").last.scroll_into_view_if_needed()
+    drag(page, picture.locator(".area").last, (0.5, 0.3), (0.5, 0.6))
+    until(page, lambda: "zoom.profiles=y" in page.url)
+    assert picture.evaluate(width) == before
+    expect(page.get_by_text(re.compile("At the left the string: drill pipe, .*bit to 200 m"))).to_be_visible()
+
+
 def test_names_of_bars_of_energy_have_their_numbers_and_room(opened: Opens, sweep: Sweep) -> None:
     page = opened("#/nowhere", viewport={"width": 600, "height": 800})
 

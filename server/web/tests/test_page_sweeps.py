@@ -308,7 +308,7 @@ def test_the_selected_sweep_stays_so_when_another_arrives(opened: Opens, client:
     assert second.id != first.id
 
 
-def test_beside_a_selected_sweep_that_is_deleted_its_neighbour_is_selected(opened: Opens, client: Client) -> None:
+def test_next_to_a_selected_sweep_that_is_deleted_its_neighbour_is_selected(opened: Opens, client: Client) -> None:
     tag = "neighbours"
     names = ["last", "middle", "first"]
     sweeps = {name: client.submit("paper-200m", set=SHORT, tags=[tag], name=name).wait(timeout=60.0) for name in names}

@@ -2,7 +2,7 @@
 
 import { isFinal } from "../data/api.js";
 import { hasNotBegun } from "../data/queue.js";
-import { duration, moment } from "../data/units.js";
+import { duration, moment, number } from "../data/units.js";
 import { h } from "./dom.js";
 
 /** @typedef {import("../data/pace.js").Pace} Pace */
@@ -16,11 +16,11 @@ import { h } from "./dom.js";
 export function progressPart(sweep, pace, before = 0) {
   const { counts } = sweep;
   const left = pace.left();
-  const words = [`${counts.succeeded} of ${counts.total} succeeded`];
-  if (counts.running) words.push(`${counts.running} running`);
+  const words = [`${number(counts.succeeded)} of ${number(counts.total)} succeeded`];
+  if (counts.running) words.push(`${number(counts.running)} running`);
   const isMarked = sweep.state === "completed" && counts.failed > 0;
-  if (counts.failed && !isMarked) words.push(`${counts.failed} failed`);
-  if (counts.cancelled) words.push(`${counts.cancelled} cancelled`);
+  if (counts.failed && !isMarked) words.push(`${number(counts.failed)} failed`);
+  if (counts.cancelled) words.push(`${number(counts.cancelled)} cancelled`);
   const isHeld = hasNotBegun(sweep);
   if (isHeld && before) words.push(`behind ${before} ${before === 1 ? "sweep" : "sweeps"}`);
   if (sweep.state === "running")

@@ -74,7 +74,7 @@ export function keep(changes) {
 }
 
 /**
- * Holds beside the link what is too long for it: in this tab it is there again where the page is loaded anew, and after going back or forward.
+ * Holds next to the link what is too long for it: in this tab it is there again where the page is loaded anew, and after going back or forward.
  * @param {string | null} text
  */
 export function hold(text) {
@@ -82,7 +82,7 @@ export function hold(text) {
   history.replaceState(text === null ? null : { held: text }, "");
 }
 
-/** @returns {string | null} what is held beside the link */
+/** @returns {string | null} what is held next to the link */
 export function held() {
   return history.state?.held ?? null;
 }

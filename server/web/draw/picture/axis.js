@@ -99,7 +99,10 @@ export class Axis {
         .map((text) => ({ value: text, text }));
     if (this.isLog) return logAxisTicks(low, high);
     const count = this.own.nticks ?? Math.max(3, length / APART[this.isAcross ? "x" : "y"]);
-    return roundValues(low, high, count).map((value) => ({ value, text: tickText(value) }));
+    const values = roundValues(low, high, count);
+    // One number is no scale.
+    const enough = values.length > 1 ? values : roundValues(low, high, 2 * count);
+    return enough.map((value) => ({ value, text: tickText(value) }));
   }
 
   /** @param {any} value */

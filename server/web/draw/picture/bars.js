@@ -1,4 +1,4 @@
-// Bars over words, lying or standing; those of one word stand beside each other.
+// Bars over words, lying or standing; those of one word stand next to each other.
 
 /** Part of a word's place that its bars fill. */
 const FILLED = 0.8;

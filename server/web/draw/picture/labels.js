@@ -80,7 +80,7 @@ export class Labels {
     return h("div", {}, mark, words);
   }
 
-  /** Puts a label beside a place, within the picture. @param {HTMLElement} label @param {{x: number, y: number}} at */
+  /** Puts a label next to a place, within the picture. @param {HTMLElement} label @param {{x: number, y: number}} at */
   #put(label, { x, y }) {
     const { clientWidth, clientHeight } = this.element;
     const { offsetWidth, offsetHeight } = label;

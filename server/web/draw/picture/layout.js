@@ -13,7 +13,7 @@ export const [BAR, BAR_LEFT] = [14, 16];
  */
 /** @typedef {{left: number, top: number, right: number, bottom: number, width: number, height: number}} Frame */
 /**
- * Room that is needed beside the axes.
+ * Room that is needed next to the axes.
  * @typedef {{width: number, height: number, top: number, bar: number, measure: (text: string) => number}} Room
  */
 
@@ -104,7 +104,7 @@ export function arrange(axes, panels, layout, room) {
 }
 
 /**
- * Frame about all panels, with room for ticks, titles, and what stands above and beside.
+ * Frame about all panels, with room for ticks, titles, and what stands above and next to them.
  * @param {Axis[]} axes @param {any} layout @param {Room} room
  * @returns {Frame}
  */

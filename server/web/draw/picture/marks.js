@@ -216,7 +216,7 @@ const CORNERS = {
   x: CROSS.map(([across, down]) => [(across - down) * 0.9, (across + down) * 0.9]),
 };
 
-/** Writes the words of a trace's points beside them. @param {Pen} pen @param {any} trace @param {Places} places @param {number} line height [pixels] */
+/** Writes the words of a trace's points next to them. @param {Pen} pen @param {any} trace @param {Places} places @param {number} line height [pixels] */
 export function drawWords(pen, trace, { x, y }, line) {
   const { color, size = WORD } = trace.textfont ?? {};
   const radius = (trace.marker?.size ?? SYMBOL) / 2 + APART;
@@ -231,8 +231,9 @@ export function drawWords(pen, trace, { x, y }, line) {
     String(trace.text[row])
       .split("<br>")
       .forEach((words, order, all) => {
-        const lines = side === "bottom" ? order + 0.5 : order + 0.5 - all.length;
-        const down = (side === "bottom" ? radius : -radius) + lines * line;
+        const above = { bottom: 0, middle: all.length / 2 }[side] ?? all.length;
+        const away = { bottom: radius, middle: 0 }[side] ?? -radius;
+        const down = away + (order + 0.5 - above) * line;
         if (words.trim()) pen.fillText(words, across, y[row] + down);
       });
   }

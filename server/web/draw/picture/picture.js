@@ -24,8 +24,8 @@ import { drawNote, drawShape } from "./shapes.js";
 /** @typedef {import("./svg-pen.js").Pen} Pen */
 
 /**
- * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are read, `choosing` and `chosen` with
- * the area that is dragged over (`null` where the drag was broken off), `zoomed` when the reader has changed its ranges, and `painted`.
+ * A picture in a place, which gets its events: `pointhover` and `pointclick` with the points that are read, `placeclick` with the values at
+ * the mouse, `choosing` and `chosen` with the area that is dragged over (`null` where the drag was broken off), `zoomed` when the reader has changed its ranges, and `painted`.
  */
 export class Picture {
   /** @type {any[]} */
@@ -114,9 +114,9 @@ export class Picture {
     return this.#panels.find((panel) => this.axesIn(panel).includes(axis));
   }
 
-  /** Axes of a panel. @param {Panel} panel */
+  /** Axes of a panel that the reader may move. @param {Panel} panel */
   axesIn({ x, y, over }) {
-    return [x, y, ...over];
+    return [x, y, ...over].filter(({ own }) => !own.isFixed);
   }
 
   /** Sets ranges, of axes that match these too. @param {Map<Axis, Range>} ranges */
@@ -135,7 +135,7 @@ export class Picture {
 
   /** Zooms about the middle. @param {number} factor by which more is shown */
   zoomBy(factor) {
-    const changed = [...this.axes.values()].filter(({ words }) => !words);
+    const changed = [...this.axes.values()].filter(({ words, own }) => !words && !own.isFixed);
     this.setRanges(new Map(changed.map((axis) => [axis, axis.widened(factor)])));
     this.dispatch("zoomed");
   }
@@ -203,6 +203,8 @@ export class Picture {
   click(px, py) {
     const points = this.describe(px, py);
     if (points.length) this.dispatch("pointclick", { points });
+    const panel = this.panelAt(px, py);
+    if (panel) this.dispatch("placeclick", { x: panel.x.toValue(px), y: panel.y.toValue(py) });
   }
 
   get #size() {

@@ -55,7 +55,7 @@ export function drawShape(pen, shape, axes, frame) {
 }
 
 /**
- * Writes a note: beside its place, or in a box with a line to it.
+ * Writes a note: next to its place, or in a box with a line to it.
  * @param {Pen} pen
  * @param {any} note
  * @param {Map<string, Axis>} axes
@@ -91,7 +91,7 @@ export function drawNote(pen, note, axes, frame, inks, measure) {
 }
 
 /**
- * Left upper corner of a note beside its place, within the picture.
+ * Left upper corner of a note next to its place, within the picture.
  * @param {any} note @param {{x: number, y: number}} at @param {{width: number, height: number}} size @param {Frame} frame
  */
 function beside({ xanchor = "center", yanchor = "middle", yref }, { x, y }, { width, height }, frame) {

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
 import { accuracyOf, advice, placeOf, sayError } from "../../data/accuracy.js";
-import { Biases } from "../../data/biases.js";
+import { Biases, sayWorst } from "../../data/biases.js";
 import { loadQuantities } from "../../data/units.js";
 
 await loadQuantities();
@@ -70,4 +70,16 @@ test("the largest bias is that of the point, or else of all verified points", as
     isOwn: false,
   });
   assert.equal(new Biases().orbitSize(3), null);
+});
+
+test("the worst bias of a sweep has its sign and one per cent sign", () => {
+  const said = (worst) => sayWorst(worst).replaceAll("\u202f", " ");
+  assert.equal(
+    said({ bias: -0.0052, ordinal: 3, promised: 0.08 }),
+    "Verified against reference runs: worst bias of orbit size −0.52 % at point 3 (promised: 8 %).",
+  );
+  assert.equal(
+    said({ bias: 1.654, ordinal: 9, promised: null }),
+    "Verified against reference runs: worst bias of orbit size +170 % at point 9.",
+  );
 });

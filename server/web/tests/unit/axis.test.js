@@ -104,3 +104,11 @@ test("a range is zoomed about its middle, in the direction of the axis", () => {
   const axis = placed("y", { range: [0, 10] }, [trace]);
   close(axis.between(axis.toPixel(8), axis.toPixel(2)), [2, 8]);
 });
+
+test("a low axis has two numbers at least", () => {
+  const axis = placed("y", { range: [-37.9, -34.3] }, [line([0, 1], [-37, -35])], 0, 110);
+  assert.deepEqual(
+    axis.ticks().map(({ value }) => value),
+    [-37, -36, -35],
+  );
+});

@@ -10,6 +10,8 @@ export const QUANTITIES = JSON.parse(
 const stored = new Map();
 
 Object.assign(globalThis, {
+  addEventListener: () => {},
+  ResizeObserver: class {},
   document: { documentElement: { dataset: {} } },
   fetch: async () => new Response(JSON.stringify(QUANTITIES)),
   localStorage: {

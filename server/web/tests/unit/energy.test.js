@@ -33,7 +33,7 @@ test("accounts are sorted by size, with their signs in words", () => {
   );
 });
 
-test("a logarithmic scale begins below the least energy that is not nothing beside the largest", () => {
+test("a logarithmic scale begins below the least energy that is not nothing next to the largest", () => {
   assert.equal(floorOf([905845, -32.6, 1.7, 0]), 0);
   assert.equal(floorOf([905845, 1e-5]), 5);
   assert.equal(floorOf([100, 100]), 1);

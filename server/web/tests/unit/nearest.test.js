@@ -98,7 +98,7 @@ test("all lines are read along a cursor", () => {
   );
 });
 
-test("bars of one word stand beside each other and are found", () => {
+test("bars of one word stand next to each other and are found", () => {
   const traces = [
     { type: "bar", x: ["a", "b"], y: [3, -2], marker: {} },
     { type: "bar", x: ["a", "b"], y: [1, null], marker: {} },

@@ -98,7 +98,7 @@ pub fn fit(readings: &[Reading]) -> Result<MudReport, MudError> {
     if points.iter().all(|point| point.rate == points[0].rate) {
         return Err(MudError::Count(1));
     }
-    let power_law = best(&points, |points, index| through_zero(points, index)).ok_or(MudError::NotViscous)?;
+    let power_law = best(&points, through_zero).ok_or(MudError::NotViscous)?;
     // Two readings, or none that bends, leave the yield stress open: the power law then.
     let least_squares =
         best(&points, |points, index| line(points, index).filter(|fit| fit.yield_stress >= 0.0));

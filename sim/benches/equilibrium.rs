@@ -1,6 +1,8 @@
 //! Searches for the equilibrium: time per node and iterations of strings of a real well, with and without tool joints, and scenarios drawn at random.
 //! Run: `cargo bench -p drillsweep-sim --bench equilibrium [-- COUNT]`, with COUNT random scenarios for each law of contact (300)
 
+#![allow(clippy::print_stdout, reason = "a report for the console")]
+
 use std::time::{Duration, Instant};
 
 use drillsweep_scenario::{Mesh, Scenario, WallLaw, preset};

@@ -140,6 +140,17 @@ impl WellPath {
         interval.arc.curvature(s - interval.top)
     }
 
+    /// Unit tangent and curvature vector \[1/m\] at `s`, on the arc that holds `within`: at a station the two arcs have curvatures of their own.
+    pub(crate) fn on_arc(&self, within: f64, s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let interval = self.interval(within);
+        (interval.arc.tangent(s - interval.top), interval.arc.curvature(s - interval.top))
+    }
+
+    /// Measured depths of the stations but the last one \[m\].
+    pub(crate) fn stations(&self) -> impl Iterator<Item = f64> {
+        self.intervals.iter().map(|interval| interval.top)
+    }
+
     /// True vertical depth below the first station \[m\].
     pub fn true_vertical_depth(&self, s: f64) -> f64 {
         self.position(s).z

@@ -20,6 +20,7 @@ mod report;
 mod scenario;
 mod service;
 mod simulate;
+mod statics;
 mod submit;
 mod sweeps;
 mod telemetry;
@@ -96,6 +97,8 @@ enum Command {
     Cost(cost::CostArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
+    /// Compute torque and drag of a soft string: hook load and surface torque over bit depth, by motion and friction.
+    Statics(statics::StaticsArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -217,6 +220,7 @@ fn run() -> anyhow::Result<()> {
         Command::Plan(arguments) => plan::plan(&arguments),
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
+        Command::Statics(arguments) => statics::show(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

@@ -39,6 +39,11 @@ impl DragMode {
     pub const ALL: [Self; 6] =
         [Self::PickUp, Self::SlackOff, Self::Rotate, Self::Drill, Self::Slide, Self::Ream];
 
+    /// The mode of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+
     /// Name in documents.
     pub fn name(self) -> &'static str {
         match self {

@@ -25,6 +25,7 @@ pub mod request;
 pub mod service;
 pub mod sweep;
 pub mod time_span;
+pub mod torque_drag;
 pub mod verify;
 pub mod view;
 

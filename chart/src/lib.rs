@@ -15,6 +15,7 @@ mod shown;
 mod spectrum;
 mod string;
 mod sweep;
+mod torque_drag;
 mod words;
 
 pub use cost::work_precision;
@@ -28,6 +29,7 @@ pub use shown::caption;
 pub use spectrum::spectrum;
 pub use string::string;
 pub use sweep::{SweepView, sweep};
+pub use torque_drag::broomstick;
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

@@ -52,7 +52,7 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
     strips.extend(
         assembly.filter(|start| *start > 0.0 && depth - start < SHORT * depth).map(|start| [start, depth]),
     );
-    let hole = scenario.well.hole_diameter;
+    let hole = scenario.well.widest_hole();
     let sketch = StringSketch {
         hole,
         parts,
@@ -60,7 +60,10 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
             .string
             .gauges
             .iter()
-            .map(|gauge| [unit.of(gauge.measured_depth), hole - 2.0 * gauge.clearance])
+            .map(|gauge| {
+                let hole = scenario.hole_at(gauge.measured_depth).diameter;
+                [unit.of(gauge.measured_depth), hole - 2.0 * gauge.clearance]
+            })
             .collect(),
         unbalance: scenario.string.unbalance.iter().map(|mass| unit.of(mass.measured_depth)).collect(),
         strips: strips.into_iter().map(|ends| ends.map(|depth| unit.of(depth))).collect(),

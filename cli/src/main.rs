@@ -21,6 +21,7 @@ mod report;
 mod scenario;
 mod service;
 mod simulate;
+mod statics;
 mod submit;
 mod sweeps;
 mod telemetry;
@@ -99,6 +100,8 @@ enum Command {
     Import(import::ImportArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),
+    /// Compute torque and drag of a soft string: hook load and surface torque over bit depth, by motion and friction.
+    Statics(statics::StaticsArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -221,6 +224,7 @@ fn run() -> anyhow::Result<()> {
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Import(arguments) => import::show(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
+        Command::Statics(arguments) => statics::show(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

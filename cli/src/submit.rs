@@ -379,7 +379,7 @@ fn parse_named_axis(text: &str) -> anyhow::Result<(String, Axis)> {
 }
 
 /// `a,b,c`, `from:to:count`, `from:to`, the latter two with `:log` for equal ratios. A value of a quantity may have its unit.
-fn parse_axis(path: &str, text: &str) -> anyhow::Result<Axis> {
+pub(crate) fn parse_axis(path: &str, text: &str) -> anyhow::Result<Axis> {
     let units = drillsweep_quantity::of(path).and_then(|quantity| quantity.units);
     let number = |text: &str| -> anyhow::Result<f64> {
         match (text.trim().parse(), units) {

@@ -132,6 +132,22 @@ quantities! {
     /// Torque of the lowest element.
     TORQUE_BIT: "torque_bit", "", TORQUE, "torque at the bit";
 
+    // Torque and drag.
+    /// Motion of the string and loads on its bit: `pick_up`, `slack_off`, `rotate`, `drill`, `slide` or `ream`.
+    DRAG_MODE: "drag_mode", "", -, "motion";
+    /// Friction factor of the whole hole; absent if each hole section has its own.
+    FRICTION_FACTOR: "friction_factor", "", RATIO, "friction factor";
+    /// Measured depth of the bit; above the end of the string pipe is missing at the top.
+    BIT_DEPTH: "bit_depth", "", DEPTH, "bit depth";
+    /// Tension at the top of a soft string, with the travelling weight.
+    HOOK_LOAD: "hook_load", "", FORCE, "hook load";
+    /// Torque at the top of a soft string, against the rotation.
+    SURFACE_TORQUE: "surface_torque", "", TORQUE, "surface torque";
+    /// Least additional tension by which a part of the string yields with its torque; absent without a grade.
+    OVERPULL_MARGIN: "overpull_margin", "", FORCE, "margin of overpull";
+    /// Measured depth of the least margin of overpull.
+    OVERPULL_MARGIN_DEPTH: "overpull_margin_depth", "", DEPTH, "depth of the least margin of overpull";
+
     // Mud.
     /// Fluid friction coefficient of the string in the annulus.
     FRICTION_COEFFICIENT: "friction_coefficient", "C_f", RATIO, "friction coefficient C_f";

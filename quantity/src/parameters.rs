@@ -13,6 +13,10 @@ pub(super) static ALL: &[Quantity] = &[
     field("well.survey.measured_depth", "", Some(&units::DEPTH), "survey depth"),
     field("well.survey.inclination_deg", "", Some(&units::ANGLE_IN_DEGREES), "inclination"),
     field("well.survey.azimuth_deg", "", Some(&units::ANGLE_IN_DEGREES), "azimuth"),
+    field("well.section.from", "", Some(&units::DEPTH), "depth of a hole section"),
+    field("well.section.hole_diameter", "D_ch", Some(&units::WIDTH), "diameter of a hole section"),
+    field("well.section.static_friction", "mu_s", Some(&units::RATIO), "static friction of a hole section"),
+    field("well.section.dynamic_friction", "mu_d", Some(&units::RATIO), "dynamic friction of a hole section"),
     // The string.
     field("string.material.youngs_modulus", "E", Some(&units::MODULUS), "Young's modulus"),
     field("string.material.density", "rho", Some(&units::DENSITY), "density of the string"),

@@ -3,7 +3,7 @@
 use drillsweep_api::AxisName;
 use drillsweep_quantity::columns::{INNER_DIAMETER, MEASURED_DEPTH, OUTER_DIAMETER};
 use drillsweep_quantity::{UnitSystem, units};
-use drillsweep_scenario::{Scenario, Section, SectionKind};
+use drillsweep_scenario::{HoleSection, Scenario, Section, SectionKind};
 use drillsweep_table::Table;
 use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
@@ -120,6 +120,7 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
     };
     let rows = [
         ("hole diameter", amount("well.hole_diameter", scenario.well.hole_diameter, system)),
+        ("hole sections", hole_sections(scenario, system)),
         ("survey stations", survey.len().to_string()),
         ("surveyed to", survey.last().map_or(NONE.to_owned(), |last| depth(last.measured_depth))),
         ("inclination", range),
@@ -128,6 +129,21 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
         ("unbalance masses", scenario.string.unbalance.len().to_string()),
     ];
     facts("Well and string", rows.into_iter().map(|(name, value)| (name.to_owned(), value)))
+}
+
+/// Depth, diameter and friction of every section of the hole.
+fn hole_sections(scenario: &Scenario, system: UnitSystem) -> String {
+    let section = |(i, section): (usize, &HoleSection)| {
+        let hole = scenario.hole_of(Some(i));
+        let from = amount(MEASURED_DEPTH.name, section.from, system);
+        let diameter = amount("well.hole_diameter", hole.diameter, system);
+        let name = if section.name.is_empty() { String::new() } else { format!("{} ", section.name) };
+        format!("{name}from {from}: {diameter}, friction {}/{}", hole.static_friction, hole.dynamic_friction)
+    };
+    if scenario.well.section.is_empty() {
+        return NONE.to_owned();
+    }
+    scenario.well.section.iter().enumerate().map(section).collect::<Vec<_>>().join("; ")
 }
 
 fn length(sections: &[Section]) -> f64 {

@@ -8,6 +8,7 @@ mod compose;
 mod effects;
 mod failure;
 mod format;
+mod hole;
 mod mesh;
 mod nearest;
 mod number;
@@ -26,6 +27,7 @@ pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise
 pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use failure::{FailureClass, PointError};
+pub use hole::{Hole, HoleSection};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use nearest::{nearest, unknown_preset};
 pub use outputs::{OrbitOutputs, Outputs};
@@ -89,7 +91,7 @@ pub struct Scenario {
     pub cost_study: Option<CostStudy>,
 }
 
-/// The well: a survey interpolated by minimum curvature (docs/model/well.md) and one open hole.
+/// The well: a survey interpolated by minimum curvature (docs/model/well.md), and its hole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Well {
@@ -101,6 +103,10 @@ pub struct Well {
     /// 180 deg from one to the next; between them its curvature is constant, so that wide stations smooth doglegs out and noisy
     /// close ones invent them.
     pub survey: Vec<SurveyStation>,
+    /// Sections of the hole with a diameter or friction of their own, from the top down; none by default: one hole. Each holds from
+    /// its depth to the next one, and has a node there if the string reaches it.
+    #[serde(default)]
+    pub section: Vec<HoleSection>,
 }
 
 /// One survey station.

@@ -5,10 +5,10 @@
 
 use crate::set::{Step, parse};
 use crate::{
-    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, Material, Mesh,
-    MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs, RayleighDamping, Recording,
-    ScaledMesh, Scenario, Section, Snapshots, StudyReference, SurveyStation, TimeStepping, TimeWindow,
-    ToolJoint, UnbalanceMass, Well,
+    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, HoleSection,
+    Material, Mesh, MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs,
+    RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots, StudyReference, SurveyStation,
+    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -116,7 +116,8 @@ macro_rules! numbers {
 
 numbers!(Scenario: well, string, mud, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
     without name, statics, effects, ensemble);
-numbers!(Well: hole_diameter, survey);
+numbers!(Well: hole_diameter, survey, section);
+numbers!(HoleSection: from, hole_diameter, static_friction, dynamic_friction; without name);
 numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
 numbers!(DrillString: material, sections, gauges, unbalance);
 numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);

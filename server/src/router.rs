@@ -19,7 +19,7 @@ use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
     analysis, cost, events, export, files, health, points, quantities, report, results, scenarios, session,
-    snapshots, spectrogram, statistics, status, sweeps, verification, web,
+    snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, from the annotations of routes and types.
@@ -77,6 +77,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(statistics::show))
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
+        .routes(routes!(torque_drag::show))
         .routes(routes!(analysis::diagnosis))
         .routes(routes!(report::of_point))
         .routes(routes!(cost::show))

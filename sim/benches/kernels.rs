@@ -84,8 +84,13 @@ fn contact(bencher: Bencher) {
         friction_reference_speed: 0.033,
     };
     let law = ContactParameters::<f64>::new(&law, &ActiveEffects::ALL);
-    let node =
-        ContactNode { clearance: 0.04, contact_radius: 0.0635, stiffness_share: 1.0, damping_share: 1.0 };
+    let node = ContactNode {
+        clearance: 0.04,
+        contact_radius: 0.0635,
+        stiffness_share: 1.0,
+        damping_share: 1.0,
+        friction: None,
+    };
     let (mut x, v, mut force) = (vector(0.2), vector(0.3), vector(0.4));
     for (row, x) in x.iter_mut().enumerate() {
         let radius = if row % 2 == 0 { 0.04005 } else { 0.035 };

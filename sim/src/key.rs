@@ -143,7 +143,11 @@ const SECTIONS: [Section; 14] = [
         is_same: |a, b, _| a.scenario.string == b.string,
         value: |scenario, _| string(scenario),
     },
-    as_it_is!(well),
+    Section {
+        name: "well",
+        is_same: |a, b, _| a.scenario.well == b.well,
+        value: |scenario, _| well(scenario),
+    },
 ];
 
 fn accuracy(scenario: &Scenario) -> Value {
@@ -174,6 +178,13 @@ fn recording(scenario: &Scenario) -> Value {
         snapshots.window = snapshot_window;
     }
     value(&recording)
+}
+
+/// Well without the names of its sections.
+fn well(scenario: &Scenario) -> Value {
+    let mut well = scenario.well.clone();
+    well.section.iter_mut().for_each(|section| section.name.clear());
+    value(&well)
 }
 
 /// String with a material in every section and tool joint, in place of one of its own.
@@ -269,6 +280,7 @@ fn with_every_section() -> Scenario {
         ("recording.snapshots", json!({ "rate_hz": 25.0, "window": window })),
         ("accuracy", method.clone()),
         ("cost_study", study),
+        ("well.section", json!([{ "from": 100.0 }])),
     ];
     let mut scenario = preset("paper-200m").expect("the preset of the paper is part of the program");
     for (path, value) in changes {
@@ -317,6 +329,16 @@ mod tests {
         // Keys of stored results hash it: a change here means that all of them are computed again.
         let text: Value = serde_json::from_str(&canonical_json(&paper())).unwrap();
         insta::assert_json_snapshot!(text);
+    }
+
+    #[test]
+    fn a_hole_section_enters_by_its_numbers_but_its_name() {
+        let with = |section: Value| canonical_json(&paper().with("well.section", section).unwrap());
+        assert_eq!(with(json!([])), canonical_json(&paper()));
+        let plain = with(json!([{ "from": 100.0 }]));
+        assert!(plain.contains("\"section\":[{\"from\":100}]"), "{plain}");
+        assert_eq!(with(json!([{ "from": 100.0, "name": "casing" }])), plain);
+        assert_ne!(with(json!([{ "from": 100.0, "static_friction": 0.3 }])), plain);
     }
 
     #[test]
@@ -615,6 +637,9 @@ mod tests {
             ".string.material.grade",
             ".string.sections.material.grade",
             ".string.sections.tool_joint.material.grade",
+            ".well.section.dynamic_friction",
+            ".well.section.hole_diameter",
+            ".well.section.static_friction",
         ];
         found.sort();
         assert_eq!(found, single);

@@ -50,6 +50,14 @@ def test_a_thinned_history_keeps_its_extremes(sweep: Sweep) -> None:
     assert (thinned["u_49"].min(), thinned["u_49"].max()) == (whole.min(), whole.max())
 
 
+def test_a_point_has_its_torque_and_drag(sweep: Sweep) -> None:
+    table = sweep.point(1).torque_drag(modes=["rotate", "ream"], depths=[100.0, 200.0], friction=[0.2], axial_speed=-0.1)
+    assert list(table["bit_depth"]) == [100.0, 200.0, 100.0, 200.0]
+    turning, reaming = table["surface_torque"][1], table["surface_torque"][3]
+    assert 0.0 < reaming < turning
+    assert table["hook_load"][3] > table["hook_load"][1]
+
+
 def test_a_point_has_its_plan_and_its_modes(sweep: Sweep) -> None:
     point = sweep.point(1)
     effects = {effect["effect"]: effect for effect in point.plan()["effects"]}

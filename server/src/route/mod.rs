@@ -18,6 +18,7 @@ pub(crate) mod spectrogram;
 pub(crate) mod statistics;
 pub(crate) mod status;
 pub(crate) mod sweeps;
+pub(crate) mod torque_drag;
 pub(crate) mod verification;
 pub(crate) mod waiting;
 pub(crate) mod web;

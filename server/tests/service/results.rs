@@ -284,7 +284,15 @@ async fn a_point_whose_modes_and_plan_are_known_is_not_computed_again() {
     let body = json!({"preset": "paper-200m", "axes": {"mud_density": {"values": [1200, 1500]}}});
     let path = format!("/v1/sweeps/{}", bench.submit(body).await);
     let mut tags = std::collections::HashSet::new();
-    for view in ["1/modes?to_hz=2", "1/modes?to_hz=1", "2/modes?to_hz=2", "1/plan", "2/plan"] {
+    for view in [
+        "1/modes?to_hz=2",
+        "1/modes?to_hz=1",
+        "2/modes?to_hz=2",
+        "1/plan",
+        "2/plan",
+        "1/torque_drag",
+        "1/torque_drag?friction=0.2",
+    ] {
         let path = format!("{path}/points/{view}");
         let first = bench.get(&path).await;
         let tag = first.headers[header::ETAG].to_str().unwrap().to_owned();
@@ -294,7 +302,7 @@ async fn a_point_whose_modes_and_plan_are_known_is_not_computed_again() {
         assert!(unchanged.headers[header::CACHE_CONTROL].to_str().unwrap().contains("no-cache"));
         tags.insert(tag);
     }
-    assert_eq!(tags.len(), 5, "every answer has a tag of its own");
+    assert_eq!(tags.len(), 7, "every answer has a tag of its own");
 }
 
 #[tokio::test]
@@ -452,6 +460,38 @@ async fn the_plan_of_a_point_is_that_of_its_scenario() {
     assert_eq!(plan, planned["plan"]);
     assert!(plan["effects"].as_array().unwrap().iter().all(|effect| effect["reason"].is_string()));
     bench.get(&format!("{path}/points/3/plan")).await.problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn torque_and_drag_of_a_point_is_a_table_or_a_broomstick() {
+    let bench = Bench::new().await;
+    // Before any worker has simulated it.
+    let path =
+        format!("/v1/sweeps/{}/points/1/torque_drag", bench.submit(json!({"preset": "paper-200m"})).await);
+    let found =
+        bench.get(&format!("{path}?modes=pick_up,rotate&depths=100:200:3&friction=0.2,0.3")).await.json();
+    let columns = &found["columns"];
+    assert_eq!(columns["bit_depth"].as_array().unwrap().len(), 12);
+    assert_eq!((&columns["drag_mode"][11], &columns["friction_factor"][11]), (&json!("rotate"), &json!(0.3)));
+    let hook_load = |row: usize| columns["hook_load"][row].as_f64().unwrap();
+    assert!(hook_load(0) < hook_load(2) && hook_load(2) < hook_load(5), "{found}");
+    let picture = bench
+        .get(&format!("{path}?format=svg&field=surface_torque&modes=rotate,drill&axial_speed=0.1"))
+        .await;
+    assert!(String::from_utf8_lossy(&picture.body).contains("surface torque"));
+    for wrong in [
+        "modes=up",
+        "modes=ream",
+        "depths=201",
+        "depths=1:2",
+        "depths=1:200:100000",
+        "friction=-0.1",
+        "depths=1:200:1000&friction=0.1:0.5:50",
+        "format=svg&field=nothing",
+        "travelling_weight=x",
+    ] {
+        bench.get(&format!("{path}?{wrong}")).await.problem(400, "invalid-parameter");
+    }
 }
 
 #[tokio::test]

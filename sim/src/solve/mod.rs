@@ -1,8 +1,9 @@
-//! Model of a scenario, its equilibrium, its modes, and its motion in time.
+//! Model of a scenario, its equilibrium, its modes, and its motion in time; torque and drag of a string without bending stiffness.
 
 pub mod model;
 pub mod modes;
 pub mod motion;
 pub mod run;
+pub mod soft_string;
 pub mod statics;
 pub mod step;

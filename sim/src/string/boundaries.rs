@@ -28,21 +28,21 @@ pub enum ElementKind {
 
 /// A part of the string of one kind, one cross-section and one material, with nodes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct UniformPart {
+pub(crate) struct UniformPart {
     /// Measured depth of the upper end \[m\].
-    pub(super) top: f64,
+    pub(crate) top: f64,
     /// Measured depth of the lower end \[m\].
-    pub(super) bottom: f64,
-    pub(super) kind: ElementKind,
-    pub(super) outer_diameter: f64,
-    pub(super) inner_diameter: f64,
-    pub(super) material: Material,
+    pub(crate) bottom: f64,
+    pub(crate) kind: ElementKind,
+    pub(crate) outer_diameter: f64,
+    pub(crate) inner_diameter: f64,
+    pub(crate) material: Material,
     /// Target element length \[m\].
-    pub(super) target: f64,
+    pub(crate) target: f64,
 }
 
 /// The parts of the string by its sections, from the top down.
-pub(super) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshError> {
+pub(crate) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshError> {
     let mut stretches = Vec::new();
     let mut section_top = 0.0;
     for (index, section) in scenario.string.sections.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Elements and nodes.
 
-use drillsweep_scenario::{ContactLaw, Material, NodeChoice, Scenario, WallLaw};
+use drillsweep_scenario::{ContactLaw, Hole, Material, NodeChoice, Scenario, WallLaw};
 
 use super::boundaries::{self, ElementKind};
 use super::error::{MAX_ELEMENTS, MeshError};
@@ -23,6 +23,15 @@ pub struct MeshElement {
     pub inner_diameter: f64,
     /// Its material.
     pub material: Material,
+    /// The hole around it.
+    pub hole: Hole,
+}
+
+impl MeshElement {
+    /// Radial clearance of the concentric body \[m\].
+    pub fn clearance(&self) -> f64 {
+        0.5 * (self.hole.diameter - self.outer_diameter)
+    }
 }
 
 /// One unbalance mass at a node.
@@ -39,8 +48,7 @@ pub struct NodeUnbalance {
 pub struct MeshNode {
     /// Measured depth \[m\].
     pub measured_depth: f64,
-    /// Radial clearance j0 \[m\]: the gauge's, or half the difference of the hole's diameter and the larger
-    /// outer diameter of the adjoining elements.
+    /// Radial clearance j0 \[m\]: the gauge's, or the smaller one of the adjoining elements.
     pub clearance: f64,
     /// Radius at which the node touches the wall, R_e = D_ch/2 - j0 \[m\].
     pub contact_radius: f64,
@@ -51,6 +59,8 @@ pub struct MeshNode {
     pub damping_share: f64,
     /// True if the clearance is a gauge's.
     pub is_gauge: bool,
+    /// The hole at the node: that of the adjoining element with the smaller clearance, of the lower one if both are equal.
+    pub hole: Hole,
     /// The masses at the node.
     pub unbalance: Vec<NodeUnbalance>,
 }
@@ -66,7 +76,7 @@ pub struct StringMesh {
 
 impl StringMesh {
     /// Cuts the string of a scenario into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
-    /// of section, tool joint, gauge and unbalance mass is a node; each part between two of these becomes the
+    /// of section, tool joint, hole section, gauge and unbalance mass is a node; each part between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
     /// With the mesh `auto`, depths whose motion is recorded are nodes, too. A place within [`SNAP_FRACTION`](super::SNAP_FRACTION) of the target length of a boundary is
@@ -89,16 +99,17 @@ impl StringMesh {
             NodeChoice::Depth(_) | NodeChoice::Node(_) => None,
         };
         let recorded = scenario.recording.nodes.iter().filter_map(is_recorded);
-        let places: Vec<f64> = gauges.chain(masses).chain(recorded).collect();
-        let elements = cut(&boundaries::split(stretches, &places))?;
+        let hole_sections = scenario.well.section.iter().map(|section| section.from);
+        let places: Vec<f64> = gauges.chain(masses).chain(recorded).chain(hole_sections).collect();
+        let elements = cut(&boundaries::split(stretches, &places), scenario)?;
 
-        let mut mesh = Self { nodes: bare_nodes(&elements, length, scenario.well.hole_diameter), elements };
+        let mut mesh = Self { nodes: bare_nodes(&elements, length), elements };
         for gauge in &string.gauges {
             let index = mesh.nearest_node(gauge.measured_depth);
             let node = &mut mesh.nodes[index];
             node.clearance =
                 if node.is_gauge { node.clearance.min(gauge.clearance) } else { gauge.clearance };
-            node.contact_radius = 0.5 * scenario.well.hole_diameter - node.clearance;
+            node.contact_radius = 0.5 * node.hole.diameter - node.clearance;
             node.is_gauge = true;
         }
         if scenario.contact.law == WallLaw::PerLength {
@@ -172,7 +183,7 @@ pub(crate) fn is_on_string(measured_depth: f64, length: f64) -> bool {
 }
 
 /// Cuts each part into equal elements.
-fn cut(stretches: &[boundaries::UniformPart]) -> Result<Vec<MeshElement>, MeshError> {
+fn cut(stretches: &[boundaries::UniformPart], scenario: &Scenario) -> Result<Vec<MeshElement>, MeshError> {
     let mut elements = Vec::new();
     for stretch in stretches {
         if !(stretch.target.is_finite() && stretch.target > 0.0) {
@@ -194,6 +205,7 @@ fn cut(stretches: &[boundaries::UniformPart]) -> Result<Vec<MeshElement>, MeshEr
                 outer_diameter: stretch.outer_diameter,
                 inner_diameter: stretch.inner_diameter,
                 material: stretch.material,
+                hole: scenario.hole_at(0.5 * (top + bottom)),
             });
         }
     }
@@ -201,28 +213,27 @@ fn cut(stretches: &[boundaries::UniformPart]) -> Result<Vec<MeshElement>, MeshEr
 }
 
 /// The nodes of the elements, before gauges and masses.
-fn bare_nodes(elements: &[MeshElement], length: f64, hole_diameter: f64) -> Vec<MeshNode> {
-    (0..=elements.len())
-        .map(|i| {
-            let above = i.checked_sub(1).map_or(0.0, |above| elements[above].outer_diameter);
-            let below = elements.get(i).map_or(0.0, |below| below.outer_diameter);
-            let outer_diameter = above.max(below);
-            MeshNode {
-                measured_depth: elements.get(i).map_or(length, |below| below.top),
-                clearance: 0.5 * (hole_diameter - outer_diameter),
-                contact_radius: 0.5 * outer_diameter,
-                stiffness_share: 1.0,
-                damping_share: 1.0,
-                is_gauge: false,
-                unbalance: Vec::new(),
-            }
+fn bare_nodes(elements: &[MeshElement], length: f64) -> Vec<MeshNode> {
+    let node = |i: usize| {
+        let adjoining = elements[i.saturating_sub(1)..elements.len().min(i + 1)].iter().rev();
+        let narrowest = adjoining.min_by(|a, b| a.clearance().total_cmp(&b.clearance()))?;
+        Some(MeshNode {
+            measured_depth: elements.get(i).map_or(length, |below| below.top),
+            clearance: narrowest.clearance(),
+            contact_radius: 0.5 * narrowest.outer_diameter,
+            stiffness_share: 1.0,
+            damping_share: 1.0,
+            is_gauge: false,
+            hole: narrowest.hole,
+            unbalance: Vec::new(),
         })
-        .collect()
+    };
+    (0..=elements.len()).filter_map(node).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Gauge, Mesh, UnbalanceMass, preset};
+    use drillsweep_scenario::{Gauge, HoleSection, Mesh, UnbalanceMass, preset};
 
     use super::*;
     use crate::string::boundaries::SNAP_FRACTION;
@@ -371,6 +382,34 @@ mod tests {
         let split = StringMesh::new(&scenario).unwrap();
         assert_eq!(split.elements.len(), 297);
         assert!(split.nodes[3].is_gauge && split.nodes[3].measured_depth == 3.92);
+    }
+
+    #[test]
+    fn a_hole_section_begins_at_a_node_that_belongs_to_the_narrower_side() {
+        let mut scenario = paper();
+        let section = |from: f64, hole_diameter: Option<f64>, friction: f64| HoleSection {
+            name: String::new(),
+            from,
+            hole_diameter,
+            static_friction: Some(friction),
+            dynamic_friction: Some(friction),
+        };
+        scenario.well.section =
+            vec![section(30.1, Some(0.25), 0.1), section(60.1, None, 0.2), section(70.1, None, 0.25)];
+        let mesh = StringMesh::new(&scenario).unwrap();
+        let below = |depth: f64| mesh.elements.iter().find(|element| element.top == depth).unwrap().hole;
+        let at = |depth: f64| &mesh.nodes[mesh.nearest_node(depth)];
+        assert_eq!((below(30.1).diameter, below(60.1).diameter), (0.25, 0.2159));
+        assert_eq!(at(30.1).hole.static_friction, 0.3, "above all sections and narrower");
+        assert_eq!(at(45.0).hole.static_friction, 0.1);
+        assert!((at(45.0).clearance - 0.5 * (0.25 - 0.127)).abs() < 1e-15);
+        assert_eq!((at(60.1).hole.static_friction, at(60.1).hole.diameter), (0.2, 0.2159));
+        assert_eq!(at(70.1).hole.static_friction, 0.25, "equally wide: the lower one");
+        // A gauge keeps its clearance; its blades reach the wall of their section.
+        scenario.well.section.push(section(150.0, Some(0.26), 0.2));
+        let gauge = &StringMesh::new(&scenario).unwrap();
+        let gauge = &gauge.nodes[gauge.nearest_node(165.5)];
+        assert!((gauge.contact_radius - (0.13 - 1e-4)).abs() < 1e-15);
     }
 
     #[test]

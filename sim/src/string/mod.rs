@@ -8,5 +8,6 @@ mod mesh;
 pub mod well;
 
 pub use boundaries::{ElementKind, SNAP_FRACTION};
+pub(crate) use boundaries::{UniformPart, stretches};
 pub use error::{MAX_ELEMENTS, MeshError};
 pub use mesh::{MeshElement, MeshNode, NodeUnbalance, StringMesh};

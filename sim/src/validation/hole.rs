@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use drillsweep_scenario::Scenario;
 
+use super::loads;
 use super::report::Report;
 use crate::string::well::{WellError, WellPath};
 
@@ -18,15 +19,8 @@ const WIDEST_HOLE: f64 = 5.0;
 
 pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     let well = &scenario.well;
-    const DIAMETER: &str = "well.hole_diameter";
-    report.positive(well.hole_diameter, DIAMETER);
-    report.number(
-        well.hole_diameter,
-        DIAMETER,
-        |diameter| diameter <= WIDEST_HOLE,
-        format!("must be at most {WIDEST_HOLE} m (12 1/4 in are 0.311 m)"),
-    );
-    report.usual(well.hole_diameter, DIAMETER, &USUAL_DIAMETERS, "m");
+    diameter(report, well.hole_diameter, "well.hole_diameter");
+    sections(report, scenario);
 
     let survey = &well.survey;
     report.require(
@@ -85,8 +79,59 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     }
 }
 
+/// Diameter of the hole.
+fn diameter(report: &mut Report, diameter: f64, path: &str) {
+    report.positive(diameter, path);
+    report.number(
+        diameter,
+        path,
+        |diameter| diameter <= WIDEST_HOLE,
+        format!("must be at most {WIDEST_HOLE} m (12 1/4 in are 0.311 m)"),
+    );
+    report.usual(diameter, path, &USUAL_DIAMETERS, "m");
+}
+
+/// Sections of the hole.
+fn sections(report: &mut Report, scenario: &Scenario) {
+    let sections = &scenario.well.section;
+    for (i, section) in sections.iter().enumerate() {
+        let field = |name: &str| format!("well.section[{i}].{name}");
+        report.not_negative(section.from, field("from"));
+        if let Some(above) =
+            i.checked_sub(1).map(|above| sections[above].from).filter(|above| above.is_finite())
+        {
+            report.number(
+                section.from,
+                field("from"),
+                |from| from > above,
+                format!("must be greater than {above}, the depth of the section before"),
+            );
+        }
+        if let Some(own) = section.hole_diameter {
+            diameter(report, own, &field("hole_diameter"));
+        }
+        let hole = scenario.hole_of(Some(i));
+        if let Some(own) = section.static_friction {
+            loads::static_friction(report, own, &field("static_friction"));
+            report.require(
+                own == 0.0 || scenario.contact.static_friction != 0.0,
+                field("static_friction"),
+                own,
+                "contact.static_friction is 0, which leaves friction out of the whole hole; give it a value, and 0 to the sections without friction",
+            );
+        }
+        if section.static_friction.is_some() || section.dynamic_friction.is_some() {
+            let given =
+                if section.dynamic_friction.is_some() { "dynamic_friction" } else { "static_friction" };
+            loads::dynamic_friction(report, hole.dynamic_friction, hole.static_friction, &field(given));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::{HoleSection, Scenario};
+
     use super::super::report::testing::{problem, problems, warnings};
 
     #[test]
@@ -106,6 +151,65 @@ mod tests {
         let found = warnings(|s| s.well.hole_diameter = 2.159);
         assert_eq!((found.len(), found[0].path.as_str()), (1, "well.hole_diameter"));
         assert_eq!(warnings(|s| s.well.hole_diameter = 1.2), []);
+    }
+
+    fn section(from: f64) -> HoleSection {
+        HoleSection {
+            name: String::new(),
+            from,
+            hole_diameter: None,
+            static_friction: None,
+            dynamic_friction: None,
+        }
+    }
+
+    #[test]
+    fn hole_sections_follow_each_other() {
+        assert_eq!(warnings(|s| s.well.section = vec![section(0.0), section(150.0), section(900.0)]), []);
+        problem("well.section[0].from", |s| s.well.section = vec![section(-1.0)]);
+        let found = problem("well.section[1].from", |s| s.well.section = vec![section(10.0), section(10.0)]);
+        assert!(found.message.starts_with("must be greater than 10"), "{found}");
+    }
+
+    #[test]
+    fn a_hole_section_is_wider_than_the_string_in_it() {
+        let with = |diameter: f64| {
+            move |s: &mut Scenario| {
+                s.well.section = vec![HoleSection { hole_diameter: Some(diameter), ..section(150.0) }]
+            }
+        };
+        let found = problem("string.sections[7].outer_diameter", |s| {
+            with(0.15)(s);
+            s.well.section[0].from = 199.6;
+        });
+        assert!(found.message.contains("0.15 m"), "{found}");
+        problem("well.section[0].hole_diameter", with(5.1));
+        let tight = problem("string.gauges[1].clearance", |s| {
+            with(0.16)(s);
+            s.string.gauges[1].clearance = 1e-3;
+        });
+        assert!(tight.message.contains("the clearance of the body there"), "{tight}");
+    }
+
+    #[test]
+    fn friction_of_a_hole_section_obeys_the_rules_of_contact() {
+        let with = |static_friction: Option<f64>, dynamic_friction: Option<f64>| {
+            move |s: &mut Scenario| {
+                s.well.section = vec![HoleSection { static_friction, dynamic_friction, ..section(50.0) }]
+            }
+        };
+        assert_eq!(warnings(with(Some(0.25), Some(0.25))), []);
+        assert_eq!(warnings(with(Some(0.0), Some(0.0))), []);
+        problem("well.section[0].static_friction", with(Some(11.0), None));
+        // mu_d of the rest, 0.2, is larger than this mu_s.
+        let found = problem("well.section[0].static_friction", with(Some(0.15), None));
+        assert!(found.message.contains("0.15"), "{found}");
+        problem("well.section[0].dynamic_friction", with(None, Some(0.31)));
+        let found = problem("well.section[0].static_friction", |s| {
+            (s.contact.static_friction, s.contact.dynamic_friction) = (0.0, 0.0);
+            with(Some(0.3), Some(0.2))(s);
+        });
+        assert!(found.message.starts_with("contact.static_friction is 0"), "{found}");
     }
 
     #[test]
@@ -131,7 +235,7 @@ mod tests {
         for inclination in [-1.0, 180.5] {
             problem("well.survey[4].inclination_deg", |s| s.well.survey[4].inclination_deg = inclination);
         }
-        let straight_up = |s: &mut drillsweep_scenario::Scenario| {
+        let straight_up = |s: &mut Scenario| {
             for station in &mut s.well.survey {
                 station.inclination_deg = 180.0;
             }

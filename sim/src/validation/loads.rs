@@ -138,27 +138,36 @@ fn check_contact(report: &mut Report, contact: &ContactLaw) {
     }
     report.positive(contact.stiffness_sharpness, "contact.stiffness_sharpness");
     report.positive(contact.damping_sharpness, "contact.damping_sharpness");
-    report.not_negative(contact.static_friction, "contact.static_friction");
+    static_friction(report, contact.static_friction, "contact.static_friction");
+    dynamic_friction(report, contact.dynamic_friction, contact.static_friction, "contact.dynamic_friction");
+    report.positive(contact.friction_reference_speed, "contact.friction_reference_speed");
+}
+
+/// A static friction coefficient.
+pub(super) fn static_friction(report: &mut Report, friction: f64, path: &str) {
+    report.not_negative(friction, path);
     report.number(
-        contact.static_friction,
-        "contact.static_friction",
+        friction,
+        path,
         |friction| friction <= LARGEST_FRICTION,
         format!("must be at most {LARGEST_FRICTION} (30 % is 0.3)"),
     );
-    report.usual(contact.static_friction, "contact.static_friction", &USUAL_FRICTION, "");
-    report.not_negative(contact.dynamic_friction, "contact.dynamic_friction");
-    let largest = contact.static_friction;
+    report.usual(friction, path, &USUAL_FRICTION, "");
+}
+
+/// A dynamic friction coefficient next to the static one of the same place.
+pub(super) fn dynamic_friction(report: &mut Report, friction: f64, largest: f64, path: &str) {
+    report.not_negative(friction, path);
     if largest.is_finite() && largest >= 0.0 {
         report.number(
-            contact.dynamic_friction,
-            "contact.dynamic_friction",
+            friction,
+            path,
             |friction| friction <= largest,
             format!(
                 "must be at most static_friction, {largest}: xi = sqrt(1 - mu_d / mu_s) has no value beyond"
             ),
         );
     }
-    report.positive(contact.friction_reference_speed, "contact.friction_reference_speed");
 }
 
 /// True if the value of a length belongs to the law; reports a value that the law does not use.

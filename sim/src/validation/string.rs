@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{
-    ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, ToolJoint, WallLaw,
+    ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, Section, ToolJoint, WallLaw,
 };
 
 use super::report::Report;
-use crate::string::{MAX_ELEMENTS, MeshError, StringMesh};
+use crate::string::{MAX_ELEMENTS, MeshElement, MeshError, StringMesh};
 
 /// Difference \[m\] below which depths of nodes and stated depths are the same.
 const SAME_DEPTH: f64 = 1e-9;
@@ -75,7 +75,9 @@ fn section(report: &mut Report, scenario: &Scenario, index: usize) {
     let path = format!("string.sections[{index}]");
     report.require(section.count > 0, format!("{path}.count"), section.count, "must be 1 or more");
     report.positive(section.length, format!("{path}.length"));
-    let hole = scenario.well.hole_diameter;
+    let length = |section: &Section| f64::from(section.count) * section.length;
+    let top: f64 = scenario.string.sections[..index].iter().map(length).sum();
+    let hole = scenario.well.narrowest_hole([top, top + length(section)]);
     pipe(report, &path, section.outer_diameter, section.inner_diameter, hole);
 
     if let Some(own) = &section.material {
@@ -180,7 +182,7 @@ fn masses(report: &mut Report, scenario: &Scenario) {
     for (i, mass) in scenario.string.unbalance.iter().enumerate() {
         let path = format!("string.unbalance[{i}]");
         report.not_negative(mass.mass, format!("{path}.mass"));
-        let half_hole = 0.5 * scenario.well.hole_diameter;
+        let half_hole = 0.5 * scenario.hole_at(mass.measured_depth).diameter;
         report.number(
             mass.radius,
             format!("{path}.radius"),
@@ -247,9 +249,8 @@ fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
     for (i, gauge) in string.gauges.iter().enumerate() {
         let path = format!("string.gauges[{i}]");
         let node = mesh.nearest_node(gauge.measured_depth);
-        let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].outer_diameter);
-        let below = mesh.elements.get(node).map_or(0.0, |below| below.outer_diameter);
-        let left = 0.5 * (scenario.well.hole_diameter - above.max(below));
+        let adjoining = &mesh.elements[node.saturating_sub(1)..mesh.elements.len().min(node + 1)];
+        let left = adjoining.iter().map(MeshElement::clearance).fold(f64::INFINITY, f64::min);
         if left > 0.0 {
             report.number(
                 gauge.clearance,

@@ -24,7 +24,7 @@ pub(crate) fn random_scenario(seed: u64, index: u64) -> Scenario {
     let (accuracy, rate_hz) = draw_accuracy(&mut draw);
     let mut scenario = Scenario {
         name: format!("random {seed}/{index}"),
-        well: Well { hole_diameter, survey: draw_survey(&mut draw, length) },
+        well: Well { hole_diameter, survey: draw_survey(&mut draw, length), section: Vec::new() },
         operation: draw_operation(&mut draw, base.operation),
         mud: draw_mud(&mut draw),
         contact: draw_contact(&mut draw),

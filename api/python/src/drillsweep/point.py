@@ -315,6 +315,31 @@ class Point(Reported):
         """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50)."""
         return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
 
+    def torque_drag(
+        self,
+        *,
+        modes: Sequence[str] | None = None,
+        depths: Sequence[float] | None = None,
+        friction: Sequence[float] | None = None,
+        travelling_weight: float | None = None,
+        axial_speed: float | None = None,
+    ) -> Table:
+        """Hook load and surface torque of a soft string over the depth of the bit, with margins: a row a case.
+
+        Columns: `drag_mode`, `friction_factor`, `bit_depth`, `hook_load`, `surface_torque`, `largest_yield_ratio`,
+        `overpull_margin`, `largest_buckling_ratio`, and the depths of the last three.
+
+        Args:
+            modes: Some of `pick_up`, `slack_off`, `rotate` (these three unless given), `drill`, `slide` and `ream`.
+            depths: Depths of the bit [m]; 40 to the end of the string unless given.
+            friction: Friction factors of the whole hole; the dynamic friction of each hole section unless given.
+            travelling_weight: Weight of top drive and travelling block [N].
+            axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.
+        """
+        lists = {"modes": modes, "depths": depths, "friction": friction}
+        query = {name: ",".join(map(str, values)) for name, values in lists.items() if values is not None}
+        return self.view("torque_drag", **query, travelling_weight=travelling_weight, axial_speed=axial_speed)
+
     def view(self, name: str, **query: Any) -> Table:
         """Any table of the point; `query` holds parameters of the HTTP API."""
         return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))

@@ -147,7 +147,7 @@ pub fn dynamic_segment<L: Lane>(
     force.middle = pressed.middle;
     for point in segment.points(law, &pressed, motion, rotation_speed, zero) {
         let friction = if law.has_friction {
-            law.friction_coefficient(point.surface.sliding_speed) * point.normal.abs()
+            law.friction_of(&segment.wall).coefficient(point.surface.sliding_speed) * point.normal.abs()
         } else {
             zero
         };
@@ -199,9 +199,10 @@ pub fn implicit_segment<L: Lane>(
 
     let mut friction = [zero; 2];
     if law.has_friction {
+        let curve = law.friction_of(&segment.wall);
         let pressed = [normal[0].abs(), normal[1].abs()];
         let mut speeds = [p.surface.sliding_speed, q.surface.sliding_speed];
-        let slow = speeds[0].abs().min(speeds[1].abs()).less_than(law.fast_sliding());
+        let slow = speeds[0].abs().min(speeds[1].abs()).less_than(curve.fast_sliding());
         if slow.any() {
             let radius = segment.wall.contact_radius;
             let along = |[n_u, n_v]: [L; 2], [u, v]: [L; 2]| n_u.mul_add(v, -(n_v * u));
@@ -219,15 +220,12 @@ pub fn implicit_segment<L: Lane>(
                 [response(own[0], twisted(p.place.at, p.place.at)) * pressed[0], cross * pressed[1]],
                 [cross * pressed[0], response(own[1], twisted(q.place.at, q.place.at)) * pressed[1]],
             ];
-            let opposed = law.opposed_sliding_speeds([free(&p, moved_p), free(&q, moved_q)], responses);
+            let opposed = curve.opposed_speeds([free(&p, moved_p), free(&q, moved_q)], responses);
             for (speed, opposed) in speeds.iter_mut().zip(opposed) {
                 *speed = L::select(slow, opposed, *speed);
             }
         }
-        friction = [
-            law.friction_coefficient(speeds[0]) * pressed[0],
-            law.friction_coefficient(speeds[1]) * pressed[1],
-        ];
+        friction = [curve.coefficient(speeds[0]) * pressed[0], curve.coefficient(speeds[1]) * pressed[1]];
     }
     segment.add(law, &p, normal[0], friction[0], force);
     segment.add(law, &q, normal[1], friction[1], force);

@@ -195,8 +195,9 @@ pub fn sliding_segment(
 ) -> Option<SlidingSegmentTangent> {
     let radius = segment.wall.contact_radius;
     let sliding_speed = rotation_speed * radius;
-    let elastic = Elastic::of(law, segment, values, law.friction_coefficient(sliding_speed))?;
-    let friction_slope = law.friction_slope(sliding_speed);
+    let friction = law.friction_of(&segment.wall);
+    let elastic = Elastic::of(law, segment, values, friction.coefficient(sliding_speed))?;
+    let friction_slope = friction.slope(sliding_speed);
     let mut damping = ElementMatrix::zeros();
     let mut rubbing = [0.0; 2];
     for (point, direction) in &elastic.points {

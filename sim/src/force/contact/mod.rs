@@ -1,7 +1,7 @@
 //! Borehole contact and friction, equations (10) to (14) and (36) (docs/model/contact.md).
 //!
 //! With r = sqrt(u^2 + v^2), normal n = (u, v)/r and tangent t = (-v, u)/r in the sense of rotation, a node
-//! touches the wall if its penetration P = r - j0 is positive. The law is in [`ContactParameters`]; a node's
+//! touches the wall if its penetration P = r - j0 is positive. The law is in [`ContactParameters`], its friction in [`Friction`]; a node's
 //! force in motion is [`dynamic_contact`], inside an implicit solve [`implicit_contact`], at rest [`static_contact`]; its
 //! linearisation about steady sliding is [`sliding_tangent`].
 //!
@@ -10,6 +10,7 @@
 
 mod along_element;
 mod along_element_tangents;
+mod friction;
 mod law;
 mod motion;
 mod node;
@@ -28,6 +29,7 @@ pub use along_element_tangents::{
     SlidingSegmentTangent, SmoothSegmentForce, StaticSegmentForce, planes, sliding_segment,
     smooth_static_segment, static_segment, whole_segment,
 };
+pub use friction::Friction;
 pub use law::ContactParameters;
 pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
 pub use node::ContactNode;

@@ -160,11 +160,12 @@ fn implicit_force<L: Lane>(
         law.limited(slope.mul_add(normal_before, normal) / (slope + L::splat(1.0)))
     };
     let friction_speed = |sliding_speed: L, normal: L| {
-        if !sliding_speed.abs().less_than(law.fast_sliding()).any() {
+        let curve = law.friction_of(node);
+        if !sliding_speed.abs().less_than(curve.fast_sliding()).any() {
             return sliding_speed;
         }
         let response = surface * speed;
-        law.opposed_sliding_speed(response.mul_add(friction_before, sliding_speed), response * normal)
+        curve.opposed_speed(response.mul_add(friction_before, sliding_speed), response * normal)
     };
     contact_force(law, node, motion, rotation_speed, normal, friction_speed)
 }
@@ -192,7 +193,7 @@ fn contact_force<L: Lane>(
     let normal = law.limited(damping.mul_add(penetration_rate, elastic));
     let normal = normal_force(normal, penetration);
     let friction = if law.has_friction {
-        law.friction_coefficient(friction_speed(sliding_speed, normal.abs())) * normal.abs()
+        law.friction_of(node).coefficient(friction_speed(sliding_speed, normal.abs())) * normal.abs()
     } else {
         zero
     };

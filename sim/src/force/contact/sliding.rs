@@ -33,8 +33,9 @@ pub fn sliding_tangent(
     let slope = law.elastic_slope(penetration) * node.stiffness_share;
     let damping = law.damping(penetration) * node.damping_share;
     let sliding_speed = rotation_speed * node.contact_radius;
-    let friction = law.friction_coefficient(sliding_speed);
-    let friction_slope = force * law.friction_slope(sliding_speed);
+    let curve = law.friction_of(node);
+    let friction = curve.coefficient(sliding_speed);
+    let friction_slope = force * curve.slope(sliding_speed);
     let (along, about) = (law.tangential_share, law.torque_share * node.contact_radius);
 
     // The force is -F_n (n + mu t), the torque -mu F_n R_e. F_n changes along n; n and t turn with a step along t; mu changes with
@@ -74,8 +75,13 @@ mod tests {
         let mut contact = preset("paper-200m").unwrap().contact;
         (contact.stiffness_sharpness, contact.damping_sharpness) = (3e3, 2e3);
         let law = ContactParameters::<f64>::new(&contact, &ActiveEffects::ALL);
-        let node =
-            ContactNode { clearance: 0.027, contact_radius: 0.081, stiffness_share: 0.7, damping_share: 1.9 };
+        let node = ContactNode {
+            clearance: 0.027,
+            contact_radius: 0.081,
+            stiffness_share: 0.7,
+            damping_share: 1.9,
+            friction: None,
+        };
         let (u, v) = (0.0274 * 0.6, -0.0274 * 0.8);
         for rotation_speed in [12.566, 0.3, -2.0, 0.0] {
             let force = |x: [f64; 3], rate: [f64; 3]| {

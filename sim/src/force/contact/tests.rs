@@ -27,8 +27,13 @@ const SOFT: ContactLaw = ContactLaw { stiffness_sharpness: 1e4, damping_sharpnes
 
 const FRICTIONLESS: ContactLaw = ContactLaw { static_friction: 0.0, dynamic_friction: 0.0, ..BASE };
 
-const NODE: ContactNode<f64> =
-    ContactNode { clearance: 0.04, contact_radius: 0.0635, stiffness_share: 1.0, damping_share: 1.0 };
+const NODE: ContactNode<f64> = ContactNode {
+    clearance: 0.04,
+    contact_radius: 0.0635,
+    stiffness_share: 1.0,
+    damping_share: 1.0,
+    friction: None,
+};
 
 fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
     ContactParameters::new(law, &ActiveEffects::ALL)
@@ -124,7 +129,7 @@ fn the_wall_pushes_back_and_brakes_at_eight_angles_and_both_senses() {
             };
             let force = dynamic_contact(&law, &NODE, &motion, rotation_speed);
             let sliding = whirl_speed + (rotation_speed + 0.4) * NODE.contact_radius;
-            let friction = law.friction_coefficient(sliding) * normal;
+            let friction = law.friction.coefficient(sliding) * normal;
             assert!(friction * sliding > 0.0);
             assert_close(force.penetration, penetration, 1e-12);
             assert_close(force.penetration_rate, rate, 1e-13);
@@ -161,7 +166,7 @@ fn friction_peaks_at_mu_s_falls_to_mu_d_and_starts_with_slope_one_over_v_ref() {
             ..BASE
         };
         let law = parameters(&scenario);
-        let mu = |v: f64| law.friction_coefficient(v);
+        let mu = |v: f64| law.friction.coefficient(v);
         let xi = (1.0 - mu_d / mu_s).sqrt();
         let peak = 2.0 * v_ref * mu_d / (xi * (1.0 - xi));
         assert_close(mu(peak), mu_s, 1e-14);
@@ -183,7 +188,7 @@ fn friction_of_the_base_case_peaks_at_the_published_speed() {
     let law = parameters(&BASE);
     let peak = (1..2000)
         .map(|i| f64::from(i) * 1e-4)
-        .max_by(|a, b| law.friction_coefficient(*a).total_cmp(&law.friction_coefficient(*b)));
+        .max_by(|a, b| law.friction.coefficient(*a).total_cmp(&law.friction.coefficient(*b)));
     assert!((peak.expect("speeds") - 0.054).abs() < 5e-4);
 }
 
@@ -196,14 +201,14 @@ fn friction_limits_without_falling_branch_without_dynamic_part_and_without_frict
     let equal = of(0.3, 0.3);
     let a = 1.0 / (2.0 * 0.033 * 0.3);
     for v in [0.001, 0.1, 10.0] {
-        assert_close(equal.friction_coefficient(v), 0.3 * (1.0 - (1.0 + a * v).powi(-2)), 1e-12);
+        assert_close(equal.friction.coefficient(v), 0.3 * (1.0 - (1.0 + a * v).powi(-2)), 1e-12);
     }
     // mu_d = 0: mu = (v / v_ref) / (1 + a v)^2, a = 1/(4 v_ref mu_s), peaks at mu_s for a v = 1 and dies out.
     let falling = of(0.3, 0.0);
-    assert_close(falling.friction_coefficient(4.0 * 0.033 * 0.3), 0.3, 1e-14);
-    assert!(falling.friction_coefficient(1e6) < 1e-6);
+    assert_close(falling.friction.coefficient(4.0 * 0.033 * 0.3), 0.3, 1e-14);
+    assert!(falling.friction.coefficient(1e6) < 1e-6);
     let none = of(0.0, 0.0);
-    assert!([-1.0, 0.0, 1.0, 1e6].iter().all(|v| none.friction_coefficient(*v) == 0.0));
+    assert!([-1.0, 0.0, 1.0, 1e6].iter().all(|v| none.friction.coefficient(*v) == 0.0));
 }
 
 #[test]
@@ -504,6 +509,7 @@ fn a_lane_has_the_bits_of_a_node_alone() {
         contact_radius: Four::splat(0.0635),
         stiffness_share: Four::splat(1.0),
         damping_share: Four::splat(1.0),
+        friction: None,
     };
     let motion = LateralMotion {
         u: Four::new(radii.map(|r| 0.6 * r)),
@@ -537,14 +543,14 @@ fn a_sliding_speed_that_gives_way_solves_its_equation() {
         for friction_reference_speed in [1e-4, 0.033, 1.0] {
             let law = ContactLaw { static_friction, dynamic_friction, friction_reference_speed, ..SOFT };
             let parameters: ContactParameters<f64> = parameters(&law);
-            let fast = parameters.fast_sliding();
+            let fast = parameters.friction.fast_sliding();
             let powers =
                 |from: i32, to: i32| (8 * from..=8 * to).map(|eighth| 10_f64.powf(f64::from(eighth) / 8.0));
             for (response, unopposed) in powers(-4, 4).flat_map(|r| powers(-5, 1).map(move |u| (r, u * fast)))
             {
                 let response = response * law.friction_reference_speed;
-                let left = |speed: f64| speed + response * parameters.friction_coefficient(speed) - unopposed;
-                let rises = |speed: f64| 1.0 + response * parameters.friction_slope(speed) > 0.05;
+                let left = |speed: f64| speed + response * parameters.friction.coefficient(speed) - unopposed;
+                let rises = |speed: f64| 1.0 + response * parameters.friction.slope(speed) > 0.05;
                 if !powers(-3, 1).all(|speed| rises(speed * fast)) {
                     continue;
                 }
@@ -553,12 +559,12 @@ fn a_sliding_speed_that_gives_way_solves_its_equation() {
                     let middle = 0.5 * (below + above);
                     if left(middle) < 0.0 { below = middle } else { above = middle }
                 }
-                let exact = parameters.friction_coefficient(above);
+                let exact = parameters.friction.coefficient(above);
                 for sign in [1.0, -1.0] {
-                    let speed = parameters.opposed_sliding_speed(sign * unopposed, response);
+                    let speed = parameters.friction.opposed_speed(sign * unopposed, response);
                     assert!(speed * sign >= 0.0 && speed.abs() <= unopposed);
                     let error =
-                        (parameters.friction_coefficient(speed) - sign * exact).abs() / static_friction;
+                        (parameters.friction.coefficient(speed) - sign * exact).abs() / static_friction;
                     assert!(error < 1e-8, "{law:?}, {response}, {unopposed}: {error:e}");
                 }
             }
@@ -574,13 +580,13 @@ fn a_node_that_could_stick_or_slide_sticks() {
     for response in [3.0, 30.0, 300.0] {
         let peak = (1..2000)
             .map(|i| 1e-4 * f64::from(i))
-            .map(|speed| speed + response * parameters.friction_coefficient(speed));
+            .map(|speed| speed + response * parameters.friction.coefficient(speed));
         let most = peak.clone().zip(peak.skip(1)).find(|(now, next)| next < now).unwrap().0;
         for unopposed in [0.1, 0.5, 0.9].map(|share| share * most) {
-            let speed = parameters.opposed_sliding_speed(unopposed, response);
-            let left = speed + response * parameters.friction_coefficient(speed) - unopposed;
+            let speed = parameters.friction.opposed_speed(unopposed, response);
+            let left = speed + response * parameters.friction.coefficient(speed) - unopposed;
             assert!(left.abs() < 1e-7 * unopposed, "{response}, {unopposed}: {left:e}");
-            assert!(parameters.friction_slope(speed) > 0.0, "{response}, {unopposed}: slides at {speed}");
+            assert!(parameters.friction.slope(speed) > 0.0, "{response}, {unopposed}: slides at {speed}");
         }
     }
 }
@@ -591,9 +597,9 @@ fn opposed_lanes_are_independent() {
     let one = parameters(&SOFT);
     let four = one.in_lanes::<Four>();
     let (unopposed, response) = ([0.5, 1e-3, -0.3, 0.08], [1.3, 2e-2, 0.2, 1e-5]);
-    let together = four.opposed_sliding_speed(Four::new(unopposed), Four::new(response));
+    let together = four.friction.opposed_speed(Four::new(unopposed), Four::new(response));
     for lane in 0..4 {
-        assert_eq!(together.lane(lane), one.opposed_sliding_speed(unopposed[lane], response[lane]));
+        assert_eq!(together.lane(lane), one.friction.opposed_speed(unopposed[lane], response[lane]));
     }
 }
 
@@ -601,8 +607,8 @@ fn opposed_lanes_are_independent() {
 fn friction_hardly_changes_in_fast_sliding() {
     for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.299), (1.0, 0.5)] {
         let parameters = parameters(&ContactLaw { static_friction, dynamic_friction, ..SOFT });
-        let fast: f64 = parameters.fast_sliding();
-        assert!(parameters.friction_slope(fast).abs() < 0.01 * parameters.friction_slope(0.0));
+        let fast: f64 = parameters.friction.fast_sliding();
+        assert!(parameters.friction.slope(fast).abs() < 0.01 * parameters.friction.slope(0.0));
     }
 }
 
@@ -729,7 +735,13 @@ fn friction_of_the_previous_iteration_cannot_turn_a_node_off_the_wall() {
 /// A joint of 0.3 m in a hole that leaves it 27 mm.
 const SEGMENT: ContactSegment<f64> = ContactSegment {
     length: 0.3,
-    wall: ContactNode { clearance: 0.027, contact_radius: 0.081, stiffness_share: 0.6, damping_share: 0.6 },
+    wall: ContactNode {
+        clearance: 0.027,
+        contact_radius: 0.081,
+        stiffness_share: 0.6,
+        damping_share: 0.6,
+        friction: None,
+    },
 };
 
 /// Nodal values of a straight element in the plane of u, from its deflections at both ends \[m\].
@@ -978,6 +990,7 @@ fn a_lane_has_the_bits_of_an_element_alone() {
             contact_radius: wide(|segment| segment.wall.contact_radius),
             stiffness_share: wide(|segment| segment.wall.stiffness_share),
             damping_share: wide(|segment| segment.wall.damping_share),
+            friction: None,
         },
     };
     let single = compliance();
@@ -1093,8 +1106,8 @@ fn two_sliding_speeds_that_give_way_solve_their_equations() {
         for &response in responses {
             for share in shares {
                 let matrix = [[response, share * response], [share * response, 1.1 * response]];
-                let speeds = law.opposed_sliding_speeds(unopposed, matrix);
-                let friction = speeds.map(|speed| law.friction_coefficient(speed));
+                let speeds = law.friction.opposed_speeds(unopposed, matrix);
+                let friction = speeds.map(|speed| law.friction.coefficient(speed));
                 for i in 0..2 {
                     let opposed = speeds[i] + matrix[i][0] * friction[0] + matrix[i][1] * friction[1];
                     let left = (opposed - unopposed[i]).abs();
@@ -1267,7 +1280,7 @@ fn implicit_friction_along_an_element_solves_the_friction_curve() {
                 ));
                 let normal = force.ends[0] + force.ends[1];
                 let opposed = |sliding: f64| {
-                    let friction = normal * law.friction_coefficient(sliding);
+                    let friction = normal * law.friction.coefficient(sliding);
                     sliding + speed * share * (lateral + twist * radius * radius) * friction
                 };
                 let free = rotation_speed.abs() * radius;
@@ -1276,7 +1289,7 @@ fn implicit_friction_along_an_element_solves_the_friction_curve() {
                     let middle = 0.5 * (below + above);
                     if opposed(middle) < free { below = middle } else { above = middle }
                 }
-                let friction = share * normal * law.friction_coefficient(rotation_speed.signum() * below);
+                let friction = share * normal * law.friction.coefficient(rotation_speed.signum() * below);
                 // The solution leaves less than 1e-5 m/s, at a slope of up to 1 / v_ref.
                 let margin = share * normal * 1e-5 / BASE.friction_reference_speed;
                 let [upper, _, lower, _] = force.friction[1];
@@ -1496,9 +1509,9 @@ fn friction_and_its_slope_by_one_division_are_those_of_the_curve() {
     for (static_friction, dynamic_friction) in [(0.3, 0.2), (0.3, 0.0), (0.3, 0.3)] {
         let law = parameters(&ContactLaw { static_friction, dynamic_friction, ..BASE });
         for speed in [-2.0, -0.05, 0.0, 1e-4, 0.03, 0.4, 20.0] {
-            let (friction, slope) = law.friction_with_slope(speed);
-            assert!((friction - law.friction_coefficient(speed)).abs() < 1e-15);
-            assert!((slope - law.friction_slope(speed)).abs() < 1e-14 * law.friction_slope(0.0));
+            let (friction, slope) = law.friction.with_slope(speed);
+            assert!((friction - law.friction.coefficient(speed)).abs() < 1e-15);
+            assert!((slope - law.friction.slope(speed)).abs() < 1e-14 * law.friction.slope(0.0));
         }
     }
 }
@@ -1584,6 +1597,7 @@ fn an_implicit_lane_has_the_bits_of_a_node_alone() {
         contact_radius: wide(0.0635),
         stiffness_share: wide(1.0),
         damping_share: wide(1.0),
+        friction: None,
     };
     let motion = LateralMotion {
         u: Four::new(radii.map(|r| 0.6 * r)),
@@ -1660,7 +1674,7 @@ fn friction_of_a_wall_at_rest_is_static_or_that_of_sliding() {
     let mu = |wall: &Wall| wall.law().friction_at_rest(&NODE, 0.5);
     assert_eq!(mu(&wall), BASE.static_friction);
     let sliding = wall.with_friction_at_rest(StartFriction::Sliding);
-    assert_eq!(mu(&sliding), wall.law().friction_coefficient(0.5 * NODE.contact_radius));
+    assert_eq!(mu(&sliding), wall.law().friction.coefficient(0.5 * NODE.contact_radius));
 }
 
 /// Nodal values of a bent element of a helix at `radius` \[m\], of which both ends are `angle` \[rad\] from its middle.

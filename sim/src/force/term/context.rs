@@ -101,8 +101,9 @@ impl LateralWave {
     pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
         let material = scenario.string.body_material(section);
         let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);
-        let flow_of =
-            |mud: &Mud| FlowMomentum::new(mud, &FlowGeometry::past(&beam, scenario.well.hole_diameter));
+        // The narrowest hole has the greatest added mass.
+        let hole = scenario.well.narrowest_hole([0.0, f64::INFINITY]);
+        let flow_of = |mud: &Mud| FlowMomentum::new(mud, &FlowGeometry::past(&beam, hole));
         let flow = scenario.mud.as_ref().map(flow_of);
         let mass = material.density * beam.area + flow.map_or(0.0, |flow| flow.lateral_mass());
         let stiffness = material.youngs_modulus * beam.second_moment;

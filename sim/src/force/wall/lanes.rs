@@ -221,6 +221,7 @@ impl<const D: usize> WallForces<D> {
                 contact_radius: lanes(|site| site.contact_radius, 0.0),
                 stiffness_share: lanes(|site| site.stiffness_share, 0.0),
                 damping_share: lanes(|site| site.damping_share, 0.0),
+                friction: wall.law().friction_of_lanes(|lane| sites.get(lane)?.as_ref()),
             }
         });
         let sites: Vec<_> = sites.collect();
@@ -313,7 +314,9 @@ impl<const D: usize> WallForces<D> {
                 penetration: touching(surface.penetration),
                 sliding_speed: touching(surface.sliding_speed),
                 normal_force: Four::ZERO,
-                friction_coefficient: touching(self.parameters.friction_coefficient(surface.sliding_speed)),
+                friction_coefficient: touching(
+                    self.parameters.friction_of(site).coefficient(surface.sliding_speed),
+                ),
             };
         }
         out.along.add_normal_forces(&mut out.surfaces, |surfaces| &mut surfaces.normal_force);
@@ -462,7 +465,8 @@ impl<const D: usize> WallForces<D> {
             let twist = self.freedoms.twist().map_or(rotation_speed, |twist| rotation_speed + rates[twist]);
             twist.mul_add(site.contact_radius, (along_u * rates[V] - along_v * rates[U]) * per_radius)
         };
-        let slope = self.parameters.friction_slope(surface_speed(v, Four::splat(self.rotation_speed)));
+        let sliding_speed = surface_speed(v, Four::splat(self.rotation_speed));
+        let slope = self.parameters.friction_of(site).slope(sliding_speed);
         Four::select(touches, (slope * surface_speed(change, zero)).abs(), zero)
     }
 

@@ -93,6 +93,7 @@ impl<const D: usize> Segments<D> {
                     contact_radius: lanes(|segment| segment.wall.contact_radius, 0.0),
                     stiffness_share: lanes(|segment| segment.wall.stiffness_share, 0.0),
                     damping_share: lanes(|segment| segment.wall.damping_share, 0.0),
+                    friction: wall.law().friction_of_lanes(|lane| Some(&segments.get(lane)?.wall)),
                 },
             }
         });
@@ -309,7 +310,7 @@ impl<const D: usize> Segments<D> {
         };
         let surface = surface_of(&at_rates, self.rotation_speed);
         let faster = surface_of(&at_change, Four::ZERO).sliding_speed;
-        let slope = law.friction_slope(surface.sliding_speed);
+        let slope = law.friction_of(&segment.wall).slope(surface.sliding_speed);
         Four::select(surface.touches, (slope * faster).abs(), Four::ZERO)
     }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition, WallLaw};
 
-use crate::force::contact::{ContactNode, ContactSegment, Wall};
+use crate::force::contact::{ContactNode, ContactSegment, Friction, Wall};
 use crate::force::drive::Drive;
 use crate::force::effect::active_effects;
 use crate::force::list::nodal_forces;
@@ -84,7 +84,7 @@ impl Model {
                     ),
                     frames: [&frames[i], &frames[i + 1]],
                     curvature: path.curvature(element.top + 0.5 * element.length),
-                    hole_diameter: scenario.well.hole_diameter,
+                    hole_diameter: element.hole.diameter,
                     mud: scenario.mud.as_ref(),
                     effects: &effects,
                     ends_at_bit: i == last,
@@ -113,16 +113,17 @@ impl Model {
         elements: &[StringElement],
     ) -> Wall {
         let contact = &scenario.contact;
-        let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| ContactNode::from(data));
+        let site = |(node, data): (usize, &MeshNode)| (node > 0).then(|| ContactNode::new(data, contact));
         let segment = |(data, element): (&MeshElement, &StringElement)| {
             let length = element.beam.length();
             ContactSegment {
                 length,
                 wall: ContactNode {
-                    clearance: 0.5 * (scenario.well.hole_diameter - data.outer_diameter),
+                    clearance: data.clearance(),
                     contact_radius: 0.5 * data.outer_diameter,
                     stiffness_share: length * contact.stiffness_of_a_metre() / contact.stiffness,
                     damping_share: length * contact.damping_of_a_metre() / contact.unit_damping(),
+                    friction: Friction::of_hole(&data.hole, contact),
                 },
             }
         };
@@ -218,7 +219,7 @@ impl Model {
     /// its body: 0 concentric, 1 touching (docs/model/mud.md, Eccentricity).
     pub fn eccentricity(&self, element: usize, displacement: &[[f64; DOFS]]) -> f64 {
         let radius = |node: usize| displacement[node][U].hypot(displacement[node][V]);
-        let clearance = 0.5 * (self.scenario.well.hole_diameter - self.mesh.elements[element].outer_diameter);
+        let clearance = self.mesh.elements[element].clearance();
         (0.5 * (radius(element) + radius(element + 1)) / clearance).min(1.0)
     }
 }

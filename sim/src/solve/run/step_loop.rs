@@ -653,7 +653,7 @@ impl<'m, const D: usize> Run<'m, D> {
     /// Refuses a state that is not finite or outside the hole.
     fn check_bounds(&mut self) -> Result<(), TransientError> {
         let state = &self.progress.state;
-        let hole_radius = 0.5 * self.model.scenario.well.hole_diameter;
+        let hole_radius = 0.5 * self.model.scenario.well.widest_hole();
         let farthest = if self.model.effects.contact { FARTHEST_IN_HOLE } else { FARTHEST_WITHOUT_WALL };
         let bound = farthest * hole_radius;
         let (mut fastest, mut highest_speed) = (self.fastest, 0.0);

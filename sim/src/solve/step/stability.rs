@@ -117,7 +117,7 @@ fn iteration_factor(
     let inverse = matrix.inverse_bands()?;
     let own = |compliance: f64| if is_implicit { compliance } else { 0.0 };
     let slopes = |wall: &ContactNode<f64>, force: f64| {
-        let friction = law.friction_slope(model.rotation_speed * wall.contact_radius).max(0.0);
+        let friction = law.friction_of(wall).slope(model.rotation_speed * wall.contact_radius).max(0.0);
         let friction = coefficients.velocity * force * friction;
         let lateral = stiffness * wall.stiffness_share + damping * wall.damping_share + friction;
         (lateral, friction * wall.contact_radius * wall.contact_radius)
@@ -131,7 +131,7 @@ fn iteration_factor(
         .zip(&inverse.diagonal)
         .enumerate()
         .map(|(i, ((node, force), inverse))| {
-            let site = ContactNode::from(node);
+            let site = ContactNode::new(node, contact);
             // Along elements, nodes have no share of the force.
             let force = if site.stiffness_share > 0.0 { *force } else { 0.0 };
             // The wall does not move held degrees of freedom.

@@ -81,7 +81,7 @@ mod tests {
                 azimuth_deg,
             })
             .collect();
-        WellPath::new(&Well { hole_diameter: 0.2159, survey }).unwrap()
+        WellPath::new(&Well { hole_diameter: 0.2159, survey, section: Vec::new() }).unwrap()
     }
 
     fn curved() -> WellPath {

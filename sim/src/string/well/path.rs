@@ -67,7 +67,7 @@ impl WellPath {
     /// let quarter = radius * std::f64::consts::FRAC_PI_2;
     /// let station = |measured_depth, inclination_deg| SurveyStation { measured_depth, inclination_deg, azimuth_deg: 0.0 };
     /// let survey = vec![station(0.0, 0.0), station(quarter, 90.0)];
-    /// let path = WellPath::new(&Well { hole_diameter: 0.2, survey })?;
+    /// let path = WellPath::new(&Well { hole_diameter: 0.2, survey, section: Vec::new() })?;
     /// assert!((path.true_vertical_depth(quarter) - radius).abs() < 1e-9);
     /// let third = radius * (1.0 - f64::to_radians(30.0).cos());
     /// assert!((path.position(quarter / 3.0).x.hypot(path.position(quarter / 3.0).y) - third).abs() < 1e-9);
@@ -140,6 +140,17 @@ impl WellPath {
         interval.arc.curvature(s - interval.top)
     }
 
+    /// Unit tangent and curvature vector \[1/m\] at `s`, on the arc that holds `within`: at a station the two arcs have curvatures of their own.
+    pub(crate) fn on_arc(&self, within: f64, s: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let interval = self.interval(within);
+        (interval.arc.tangent(s - interval.top), interval.arc.curvature(s - interval.top))
+    }
+
+    /// Measured depths of the stations but the last one \[m\].
+    pub(crate) fn stations(&self) -> impl Iterator<Item = f64> {
+        self.intervals.iter().map(|interval| interval.top)
+    }
+
     /// True vertical depth below the first station \[m\].
     pub fn true_vertical_depth(&self, s: f64) -> f64 {
         self.position(s).z
@@ -174,7 +185,7 @@ mod tests {
                 azimuth_deg,
             })
             .collect();
-        Well { hole_diameter: 0.2159, survey }
+        Well { hole_diameter: 0.2159, survey, section: Vec::new() }
     }
 
     fn path(stations: &[(f64, f64, f64)]) -> WellPath {

@@ -1,0 +1,173 @@
+//! Torque and drag of a soft string, over bit depth.
+
+use std::fmt::Write as _;
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use drillsweep_api::torque_drag::{Broomstick, table};
+use drillsweep_quantity::columns::{BIT_DEPTH, FRICTION_FACTOR};
+use drillsweep_sim::solve::soft_string::{AtDepth, BroomstickRow, DragMode, DragSettings};
+use drillsweep_sim::validation::validate;
+use drillsweep_table::csv;
+
+use crate::print;
+use crate::scenario::ScenarioArguments;
+use crate::submit::parse_axis;
+use crate::text::{Alignment, columns};
+
+/// Compression over the buckling load from which it is shown.
+const SHOWN: f64 = 0.005;
+
+#[derive(Args)]
+pub(crate) struct StaticsArguments {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Motions of the string: pick_up, slack_off, rotate, drill, slide, ream.
+    #[arg(long, value_delimiter = ',', value_name = "MODES", value_parser = mode, default_values = ["pick_up", "slack_off", "rotate"])]
+    modes: Vec<DragMode>,
+    /// Bit depths: a list or a range from:to:count, in m or with a unit; by default 40 to the end of the string. For a bit above that end pipe is missing at the top.
+    #[arg(long, value_name = "DEPTHS", value_parser = |text: &str| list(BIT_DEPTH.name, text))]
+    depths: Option<List>,
+    /// Friction factors of the whole hole: a list or a range from:to:count; by default the dynamic friction of each hole section.
+    #[arg(long, value_name = "FACTORS", value_parser = |text: &str| list(FRICTION_FACTOR.name, text))]
+    friction: Option<List>,
+    /// Weight of top drive and travelling block in N, part of the hook load.
+    #[arg(long, value_name = "NEWTON", default_value_t = 0.0)]
+    travelling_weight: f64,
+    /// Axial speed of the mode ream in m/s, negative upwards.
+    #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
+    axial_speed: Option<f64>,
+    /// Print the cases as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Print the cases as CSV.
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+}
+
+/// Values of an axis.
+#[derive(Debug, Clone)]
+struct List(Vec<f64>);
+
+fn list(quantity: &str, text: &str) -> anyhow::Result<List> {
+    let axis = parse_axis(quantity, text)?;
+    let Some(count) = axis.count() else { bail!("write a list or a range from:to:count, got {text:?}") };
+    Ok(List((0..count).map(|i| axis.value(i)).collect()))
+}
+
+fn mode(name: &str) -> anyhow::Result<DragMode> {
+    DragMode::named(name.trim())
+        .with_context(|| format!("there are the modes {}", DragMode::ALL.map(DragMode::name).join(", ")))
+}
+
+/// Computes torque and drag and prints it.
+pub(crate) fn show(arguments: &StaticsArguments) -> anyhow::Result<()> {
+    let scenario = arguments.scenario.resolve(None)?;
+    validate(&scenario)?;
+    let values = |list: &Option<List>| list.as_ref().map_or(Vec::new(), |list| list.0.clone());
+    let broomstick = Broomstick {
+        modes: arguments.modes.clone(),
+        depths: values(&arguments.depths),
+        friction: values(&arguments.friction),
+        settings: DragSettings {
+            travelling_weight: arguments.travelling_weight,
+            axial_speed: arguments.axial_speed,
+        },
+    };
+    let rows = broomstick.rows(&scenario)?;
+    match (arguments.json, arguments.csv) {
+        (true, _) => print(&serde_json::to_string_pretty(&rows)?),
+        (_, true) => print(csv::write(&table(&rows))?.trim_end()),
+        _ => print(text(&scenario.name, &rows)?.trim_end()),
+    }
+    Ok(())
+}
+
+fn text(name: &str, rows: &[BroomstickRow]) -> Result<String, std::fmt::Error> {
+    let name = if name.is_empty() { "the scenario" } else { name };
+    let mut text = format!("torque and drag of {name}, a soft string in still mud\n");
+    for rows in rows.chunk_by(|a, b| a.mode == b.mode) {
+        writeln!(text, "\n{}\n{}", rows[0].mode.name(), mode_text(rows))?;
+        let worst = |value: &dyn Fn(&BroomstickRow) -> Option<AtDepth>, sign: f64| {
+            let found = rows.iter().filter_map(|row| Some((value(row)?, row.bit_depth)));
+            found.max_by(|(a, _), (b, _)| (sign * a.value).total_cmp(&(sign * b.value)))
+        };
+        let at = |(of, bit_depth): (AtDepth, f64)| {
+            format!("at {:.1} m with the bit at {bit_depth:.1} m", of.measured_depth)
+        };
+        if let Some(found) =
+            worst(&|row| row.margins.buckling_ratio.filter(|ratio| ratio.value >= SHOWN), 1.0)
+        {
+            let kind = match found.0.value {
+                ratio if ratio >= 2_f64.sqrt() => ", helical",
+                ratio if ratio >= 1.0 => ", sinusoidal",
+                _ => "",
+            };
+            writeln!(
+                text,
+                "largest compression: {:.2} of the buckling load{kind}, {}",
+                found.0.value,
+                at(found)
+            )?;
+        }
+        if let Some(found) = worst(&|row| row.margins.yield_ratio, 1.0) {
+            writeln!(text, "largest stress: {:.2} of the yield strength, {}", found.0.value, at(found))?;
+        }
+        if let Some(found) = worst(&|row| row.margins.overpull, -1.0) {
+            writeln!(text, "least margin of overpull: {:.1} kN, {}", found.0.value / 1e3, at(found))?;
+        }
+    }
+    Ok(text)
+}
+
+/// Hook loads, and torques if there are any, of one mode: a row a bit depth, columns by friction.
+fn mode_text(rows: &[BroomstickRow]) -> String {
+    let turns = rows.iter().any(|row| row.surface_torque != 0.0);
+    let by_friction: Vec<&[BroomstickRow]> = rows.chunk_by(|a, b| a.friction == b.friction).collect();
+    let with = |unit: &str, row: &BroomstickRow| match row.friction {
+        Some(friction) => format!("{unit} at {friction}"),
+        None => unit.to_owned(),
+    };
+    let firsts = || by_friction.iter().map(|rows| &rows[0]);
+    let mut header = vec!["bit at m".to_owned()];
+    header.extend(firsts().map(|row| with("hook kN", row)));
+    header.extend(firsts().filter(|_| turns).map(|row| with("torque kN m", row)));
+    let line = |i: usize| {
+        let at_depth = || by_friction.iter().map(|rows| &rows[i]);
+        let mut cells = vec![format!("{:.1}", rows[i].bit_depth)];
+        cells.extend(at_depth().map(|row| format!("{:.1}", row.hook_load / 1e3)));
+        cells.extend(at_depth().filter(|_| turns).map(|row| format!("{:.2}", row.surface_torque / 1e3)));
+        cells
+    };
+    let lines: Vec<Vec<String>> = (0..by_friction[0].len()).map(line).collect();
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    columns(&header, &lines, |_| Alignment::Right)
+}
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_scenario::{Grade, preset};
+
+    use super::*;
+
+    #[test]
+    fn torque_and_drag_is_a_table_a_mode_with_its_margins() {
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.string.material.grade = Some(Grade::G105);
+        let broomstick = Broomstick {
+            modes: vec![DragMode::PickUp, DragMode::SlackOff, DragMode::Rotate, DragMode::Drill],
+            depths: list(BIT_DEPTH.name, "100:200:3").unwrap().0,
+            friction: list(FRICTION_FACTOR.name, "0.2,0.3").unwrap().0,
+            settings: DragSettings { travelling_weight: 2e5, axial_speed: None },
+        };
+        insta::assert_snapshot!(text("paper-200m", &broomstick.rows(&scenario).unwrap()).unwrap());
+    }
+
+    #[test]
+    fn modes_and_depths_are_read_by_name_and_unit() {
+        assert_eq!(mode(" slack_off").unwrap(), DragMode::SlackOff);
+        assert!(mode("up").unwrap_err().to_string().contains("pick_up, slack_off"));
+        assert_eq!(list(BIT_DEPTH.name, "1000ft").unwrap().0, [304.8]);
+        assert!(list(BIT_DEPTH.name, "1:2").unwrap_err().to_string().contains("from:to:count"));
+    }
+}

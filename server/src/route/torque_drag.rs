@@ -1,0 +1,137 @@
+//! Torque and drag of a point's string, over bit depth.
+
+use axum::Extension;
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use drillsweep_api::axis::{Axis, Scale};
+use drillsweep_api::torque_drag::{Broomstick, DragMode, DragSettings};
+use drillsweep_chart::broomstick;
+use drillsweep_quantity::UnitSystem;
+use drillsweep_quantity::columns::HOOK_LOAD;
+use drillsweep_table::Table;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+
+use crate::answer::error::Result;
+use crate::answer::etag::Tag;
+use crate::answer::extract::{Path, Query, value};
+use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::app::App;
+use crate::app::expansions::Work;
+use crate::guard::caller::Caller;
+use crate::openapi::answers::{Conditional, PictureResponse, Problems};
+use crate::route::analysis::{MEMORY_OF_EQUILIBRIUM, point};
+use crate::route::results::{PointPath, file_name};
+
+/// Query of torque and drag.
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TorqueDragQuery {
+    /// Motions of the string, separated by commas: `pick_up`, `slack_off`, `rotate`, `drill`, `slide`, `ream`; absent means the first three.
+    #[serde(default = "usual_modes", deserialize_with = "modes")]
+    #[param(value_type = Option<String>, example = "pick_up,slack_off,rotate,drill")]
+    modes: Vec<DragMode>,
+    /// Bit depths \[m\]: numbers separated by commas, or `FROM:TO:COUNT`; absent means 40 to the end of the string. For a bit above that end pipe is
+    /// missing at the top.
+    #[serde(default, deserialize_with = "numbers")]
+    #[param(value_type = Option<String>, example = "50:200:4")]
+    depths: Vec<f64>,
+    /// Friction factors of the whole hole, likewise; absent means the dynamic friction of each hole section.
+    #[serde(default, deserialize_with = "numbers")]
+    #[param(value_type = Option<String>, example = "0.2,0.25,0.3")]
+    friction: Vec<f64>,
+    /// Weight of top drive and travelling block \[N\], part of the hook load.
+    #[serde(default, deserialize_with = "value::number")]
+    travelling_weight: Option<f64>,
+    /// Axial speed of the mode `ream` \[m/s\], downhole positive.
+    #[serde(default, deserialize_with = "value::number")]
+    axial_speed: Option<f64>,
+    /// Format of the table, or of a picture of `field`; absent means that `Accept` decides.
+    #[param(inline)]
+    format: Option<PictureFormat>,
+    /// Column that a picture shows, hook load unless given.
+    field: Option<String>,
+}
+
+fn usual_modes() -> Vec<DragMode> {
+    vec![DragMode::PickUp, DragMode::SlackOff, DragMode::Rotate]
+}
+
+fn modes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<DragMode>, D::Error> {
+    let names = value::names(deserializer)?.unwrap_or_default();
+    let mode = |name: &String| {
+        let known = || DragMode::ALL.map(DragMode::name).join(", ");
+        DragMode::named(name).ok_or_else(|| D::Error::custom(format!("must be some of {}", known())))
+    };
+    names.iter().map(mode).collect()
+}
+
+/// `a,b,c` or `from:to:count`.
+fn numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    let refused = || {
+        D::Error::custom("must be numbers separated by commas, or FROM:TO:COUNT with a count of 2 to 1000")
+    };
+    let number =
+        |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(refused);
+    match text.split(':').collect::<Vec<_>>()[..] {
+        [list] => list.split(',').map(number).collect(),
+        [from, to, count] => {
+            let count = count
+                .trim()
+                .parse::<u32>()
+                .ok()
+                .filter(|count| (2..=1000).contains(count))
+                .ok_or_else(refused)?;
+            let axis = Axis::Range { from: number(from)?, to: number(to)?, count, scale: Scale::Linear };
+            Ok((0..count as usize).map(|i| axis.value(i)).collect())
+        }
+        _ => Err(refused()),
+    }
+}
+
+/// Torque and drag of a point's string over bit depth
+///
+/// Hook load and surface torque of a soft string, without bending stiffness, on the axis of the hole in still mud, with margins to yield, overpull and buckling: a row for
+/// each motion, friction factor and bit depth, 5000 at most. Pictures show lines over depth, a broomstick.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/torque_drag",
+    tag = "points",
+    operation_id = "get_torque_drag",
+    params(PointPath, TorqueDragQuery, Conditional),
+    responses(PictureResponse, Problems)
+)]
+pub(crate) async fn show(
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    Query(query): Query<TorqueDragQuery>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    /// Bytes of a case, in memory and in writing.
+    const OF_CASE: u64 = 512;
+    let format = Format::choose(query.format, &headers)?;
+    let point = point(&app, &id, n).await?;
+    let tag = Tag::of(format, &("torque_drag", &point.key, &query));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let TorqueDragQuery { modes, depths, friction, travelling_weight, axial_speed, field, .. } = query;
+    let settings = DragSettings { travelling_weight: travelling_weight.unwrap_or(0.0), axial_speed };
+    let broom = Broomstick { modes, depths, friction, settings };
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let (table, _memory): (Table, _) =
+        place.run(move |_: &mut Work| Ok(broom.table(&point.scenario)?)).await?;
+    let place = app.view(format.memory(OF_CASE * table.rows() as u64)).await?;
+    place
+        .answer(move || {
+            let column = field.as_deref().unwrap_or(HOOK_LOAD.name);
+            let draw = |table: &Table| broomstick(table, column, "Torque and drag", UnitSystem::Si);
+            let name = file_name(&id, n, "torque-drag");
+            Answer::of_table_or_picture(table, None, format, &name, Some(tag), draw)
+        })
+        .await
+}

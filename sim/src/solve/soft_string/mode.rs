@@ -1,0 +1,95 @@
+//! Motions of a string, with the loads on its bit.
+
+use std::f64::consts::PI;
+
+use drillsweep_scenario::Operation;
+use serde::{Deserialize, Serialize};
+
+use super::{DragSettings, SoftStringError};
+
+/// Motion of a string and loads on its bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DragMode {
+    /// Pulled up without rotation, off bottom.
+    PickUp,
+    /// Lowered without rotation, off bottom.
+    SlackOff,
+    /// Rotating off bottom.
+    Rotate,
+    /// Rotating on bottom, with weight and torque on bit.
+    Drill,
+    /// Lowered on bottom without rotation, with weight and torque on bit: a motor drills.
+    Slide,
+    /// Rotating off bottom with an axial speed, up or down.
+    Ream,
+}
+
+/// Velocity of a string as a body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion {
+    /// Axial speed \[m/s\], downhole positive.
+    axial_speed: f64,
+    /// Speed of rotation, without its sense \[rad/s\].
+    rotation_speed: f64,
+}
+
+impl DragMode {
+    /// All modes.
+    pub const ALL: [Self; 6] =
+        [Self::PickUp, Self::SlackOff, Self::Rotate, Self::Drill, Self::Slide, Self::Ream];
+
+    /// The mode of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+
+    /// Name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PickUp => "pick_up",
+            Self::SlackOff => "slack_off",
+            Self::Rotate => "rotate",
+            Self::Drill => "drill",
+            Self::Slide => "slide",
+            Self::Ream => "ream",
+        }
+    }
+
+    pub(super) fn motion(
+        self,
+        operation: &Operation,
+        settings: &DragSettings,
+    ) -> Result<Motion, SoftStringError> {
+        // Of a motion along one direction only the sense counts.
+        let [axial_speed, rotation_speed] = match self {
+            Self::PickUp => [-1.0, 0.0],
+            Self::SlackOff | Self::Slide => [1.0, 0.0],
+            Self::Rotate | Self::Drill => [0.0, 1.0],
+            Self::Ream => {
+                let speed = settings.axial_speed.filter(|speed| speed.is_finite());
+                let rotation_speed = operation.rotation_speed_rpm.abs() * PI / 30.0;
+                [speed.ok_or(SoftStringError::NoAxialSpeed)?, rotation_speed]
+            }
+        };
+        Ok(Motion { axial_speed, rotation_speed })
+    }
+
+    /// Tension \[N\] and torque \[N m\] at the bit.
+    pub(super) fn bit_loads(self, operation: &Operation) -> [f64; 2] {
+        match self {
+            Self::Drill | Self::Slide => [operation.weight_on_bit, operation.torque_on_bit.abs()],
+            Self::PickUp | Self::SlackOff | Self::Rotate | Self::Ream => [0.0; 2],
+        }
+    }
+}
+
+impl Motion {
+    /// Shares of friction along the string, uphole positive, that pull on what is above, and about its axis, at a radius \[m\]: opposite to the
+    /// velocity of the surface.
+    pub(super) fn shares(&self, radius: f64) -> [f64; 2] {
+        let surface_speed = self.rotation_speed * radius;
+        let speed = self.axial_speed.hypot(surface_speed);
+        if speed > 0.0 { [-self.axial_speed / speed, surface_speed / speed] } else { [0.0; 2] }
+    }
+}

@@ -11,10 +11,9 @@ const VERTICAL: f64 = 1.94;
 /// radial clearance r of its body (Dawson and Paslay 1984; in curved holes He and Kyllingstad 1995); at least that of a vertical hole. An element without
 /// weight, or without clearance, has no such load: 0.
 pub fn buckling_ratios(model: &Model, tension: &[f64]) -> Vec<f64> {
-    let hole_diameter = model.scenario.well.hole_diameter;
     let ratio = |(element, tension): (&StringElement, &f64)| {
         let section = element.beam.section();
-        let clearance = 0.5 * (hole_diameter - section.outer_diameter);
+        let clearance = 0.5 * (element.flow_geometry.hole_diameter - section.outer_diameter);
         let [x, y] = [0, 1].map(|axis| element.lateral_load[axis] + tension * element.curvature[axis]);
         let inclined = 2.0 * (section.bending_stiffness() * x.hypot(y) / clearance).sqrt();
         let [weight_x, weight_y] = element.lateral_load;

@@ -74,8 +74,7 @@ impl Sections {
             } else {
                 0.0
             };
-            let clearance =
-                0.5 * (model.scenario.well.hole_diameter - model.mesh.elements[element].outer_diameter);
+            let clearance = model.mesh.elements[element].clearance();
             let by_node = [element, element + 1].map(|node| {
                 let [u, v] = [displacement[node][U], displacement[node][V]];
                 let radius = u.hypot(v);

@@ -68,14 +68,23 @@ const GROUPS: [Group; 4] = [
 ];
 
 /// Examples of commands below another one.
-const NESTED: [Group; 1] = [(
-    "token",
-    &[
-        ("create", "drillsweep token create --owner anne --scope submit --expires 90d"),
-        ("list", "drillsweep token list"),
-        ("revoke", "drillsweep token revoke 3f9c0a1b2c4d"),
-    ],
-)];
+const NESTED: [Group; 2] = [
+    (
+        "token",
+        &[
+            ("create", "drillsweep token create --owner anne --scope submit --expires 90d"),
+            ("list", "drillsweep token list"),
+            ("revoke", "drillsweep token revoke 3f9c0a1b2c4d"),
+        ],
+    ),
+    (
+        "import",
+        &[
+            ("survey", "drillsweep import survey survey.xlsx > survey.toml"),
+            ("mud", "drillsweep import mud --readings 600=62,300=38,200=29,100=19,6=7,3=6"),
+        ],
+    ),
+];
 
 /// Width of the list of commands \[characters\], that of other help.
 const WIDTH: usize = 100;

@@ -297,7 +297,7 @@ fn checked(
         return Err(SurveyError::TooFew { count: stations.len(), first: problems.into_iter().next() });
     }
     if turned > 0 {
-        remarks.push(format!("{turned} azimuths were taken modulo 360 deg"));
+        remarks.push(format!("azimuths taken modulo 360 deg: {turned}"));
     }
     let first = stations[0];
     if first.measured_depth > 0.0 {

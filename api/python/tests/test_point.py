@@ -51,7 +51,9 @@ def test_a_thinned_history_keeps_its_extremes(sweep: Sweep) -> None:
 
 
 def test_a_point_has_its_torque_and_drag(sweep: Sweep) -> None:
-    table = sweep.point(1).torque_drag(modes=["rotate", "ream"], depths=[100.0, 200.0], friction=[0.2], axial_speed=-0.1)
+    table = sweep.point(1).torque_drag(
+        modes=["rotate", "ream"], depths=[100.0, 200.0], friction=[0.2], axial_speed=-0.1
+    )
     assert list(table["bit_depth"]) == [100.0, 200.0, 100.0, 200.0]
     turning, reaming = table["surface_torque"][1], table["surface_torque"][3]
     assert 0.0 < reaming < turning

@@ -209,8 +209,8 @@ fn arrows_down(folder: &str, layers: &[&str]) -> usize {
 
 /// Folders of the crates.
 const CRATES: &[&str] = &[
-    "api", "chart", "cli", "quantity", "report", "scenario", "server", "sim", "store", "study", "table",
-    "worker",
+    "api", "chart", "cli", "import", "quantity", "report", "scenario", "server", "sim", "store", "study",
+    "table", "worker",
 ];
 
 #[test]

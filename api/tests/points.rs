@@ -40,7 +40,7 @@ fn a_reference_that_cannot_run_a_later_point_is_found() {
             "axes": {"string.sections[1].count": {"values": [9, pieces]}}, "verify": 2})
     };
     assert_eq!(refused(of(10)), []);
-    let found = refused(of(1500));
+    let found = refused(of(1900));
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0].0, "/verify");
     assert!(found[0].1.starts_with("not valid at the accuracy `reference`: mesh: "), "{found:?}");

@@ -5,7 +5,8 @@ use std::io::Cursor;
 use calamine::{Data, Reader as _, Xlsx};
 use thiserror::Error;
 
-use crate::{MOST_BYTES, las};
+use crate::las;
+use crate::rows::MOST_BYTES;
 
 /// Largest number of rows and of columns.
 const MOST_ROWS: usize = 50_000;
@@ -66,8 +67,8 @@ impl Grid {
             return Err(GridError::OldExcel);
         } else {
             let text = decoded(bytes);
-            match las::grid(&text) {
-                Some(grid) => grid,
+            match las::rows(&text) {
+                Some(rows) => Self { rows, has_decimal_comma: false },
                 None => Self::of_text(&text)?,
             }
         };
@@ -144,18 +145,6 @@ impl Grid {
     }
 }
 
-/// Name of a column as spreadsheets have it: A to Z, AA, AB.
-pub(crate) fn column_name(index: usize) -> String {
-    let mut name = String::new();
-    let mut rest = index + 1;
-    while rest > 0 {
-        rest -= 1;
-        name.insert(0, char::from(b'A' + (rest % 26) as u8));
-        rest /= 26;
-    }
-    name
-}
-
 /// Text of bytes in UTF-8, UTF-16 with a byte order mark, or else Latin-1, which files of older programs have for degrees.
 fn decoded(bytes: &[u8]) -> String {
     let utf16 = |pairs: &[u8], of: fn([u8; 2]) -> u16| {
@@ -197,12 +186,6 @@ fn has_decimal_comma(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn columns_are_named_as_in_spreadsheets() {
-        let names = [0, 25, 26, 51, 52, 701, 702].map(column_name);
-        assert_eq!(names, ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
-    }
 
     #[test]
     fn delimiters_and_decimal_signs_are_recognised() {

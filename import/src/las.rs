@@ -1,10 +1,8 @@
 //! Log ASCII Standard 2.0 (Canadian Well Logging Society, 1992): curves with units in `~C`, numbers in `~A`.
 
-use crate::grid::Grid;
-
-/// The table of a LAS file: a row of curves with their units above the data, at the rows that they have in the file; `None` if the text is no
+/// Rows of cells of a LAS file: a row of curves with their units above the data, at the rows that they have in the file; `None` if the text is no
 /// such file.
-pub(crate) fn grid(text: &str) -> Option<Grid> {
+pub(crate) fn rows(text: &str) -> Option<Vec<Vec<String>>> {
     let is_section = |line: &str, letter: char| {
         let mut signs = line.trim_start().chars();
         signs.next() == Some('~') && signs.next().is_some_and(|sign| sign.eq_ignore_ascii_case(&letter))
@@ -32,7 +30,7 @@ pub(crate) fn grid(text: &str) -> Option<Grid> {
         }
         rows.push(row);
     }
-    Some(Grid { rows, has_decimal_comma: false })
+    Some(rows)
 }
 
 /// Heading of a curve: `DEPT.M : depth` is `DEPT (M)`.

@@ -8,13 +8,11 @@ use drillsweep_scenario::SurveyStation;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::grid::{Grid, GridError, column_name};
+use crate::grid::{Grid, GridError};
 use crate::headings::{Found, Sought, find};
 use crate::number::number;
-use crate::{CellProblem, MOST_PROBLEMS, UnderstoodColumn, witsml};
-
-/// Largest number of stations.
-pub(crate) const MOST_STATIONS: usize = 10_000;
+use crate::rows::{CellProblem, MOST_PROBLEMS, MOST_STATIONS, Row, Rows, UnderstoodColumn, column_name};
+use crate::witsml::{self, WitsmlError};
 
 /// Columns of a survey.
 const COLUMNS: [Sought; 3] = [
@@ -102,7 +100,7 @@ pub enum SurveyError {
     Grid(#[from] GridError),
     /// It is no WITSML trajectory.
     #[error("the XML is no WITSML trajectory: {0}")]
-    Witsml(String),
+    Witsml(#[from] WitsmlError),
     /// No row has the headings of a survey.
     #[error(
         "no row has headings of measured depth, inclination and azimuth, such as `MD (m)`, `Inc (deg)`, `Azi (deg)`"
@@ -155,12 +153,6 @@ pub fn survey(bytes: &[u8], options: SurveyOptions<'_>) -> Result<Survey, Survey
     };
     checked(rows, columns, problems)
 }
-
-/// A station with the row that it stands in, from 0.
-pub(crate) type Row = (usize, SurveyStation);
-
-/// Stations, meanings of columns and problems of a file.
-pub(crate) type Rows = (Vec<Row>, Vec<UnderstoodColumn>, Vec<CellProblem>);
 
 fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, SurveyError> {
     let (_, first, found) = find(grid, &COLUMNS).ok_or(SurveyError::NoHeadings)?;

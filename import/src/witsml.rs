@@ -5,10 +5,25 @@ use std::f64::consts::PI;
 use drillsweep_scenario::SurveyStation;
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::grid::GridError;
 use crate::number::number;
-use crate::survey::{MOST_STATIONS, Rows, SurveyError};
-use crate::{CellProblem, MOST_BYTES, MOST_PROBLEMS, UnderstoodColumn};
+use crate::rows::{CellProblem, MOST_BYTES, MOST_PROBLEMS, MOST_STATIONS, Rows, UnderstoodColumn};
+
+/// Reason why a file is no trajectory.
+#[derive(Debug, thiserror::Error)]
+pub enum WitsmlError {
+    /// The file is too large.
+    #[error("the file has more than {MOST_BYTES} bytes or {MOST_STATIONS} stations")]
+    Size,
+    /// It is no text.
+    #[error("the text is not UTF-8: {0}")]
+    Text(#[from] std::str::Utf8Error),
+    /// It is no XML.
+    #[error("{0}")]
+    Xml(#[from] roxmltree::Error),
+    /// It has no stations.
+    #[error("it has no trajectoryStation")]
+    NoStations,
+}
 
 /// Elements of an XML document that are read at most.
 const MOST_ELEMENTS: u32 = 2_000_000;
@@ -19,16 +34,15 @@ const LENGTHS: [(&str, f64); 5] =
 const ANGLES: [(&str, f64); 3] = [("dega", 1.0), ("deg", 1.0), ("rad", 180.0 / PI)];
 
 /// Stations of a trajectory; the `row` of a problem is a line of the file.
-pub(crate) fn trajectory(bytes: &[u8]) -> Result<Rows, SurveyError> {
+pub(crate) fn trajectory(bytes: &[u8]) -> Result<Rows, WitsmlError> {
     if bytes.len() > MOST_BYTES {
-        return Err(GridError::Size.into());
+        return Err(WitsmlError::Size);
     }
-    let text = std::str::from_utf8(bytes).map_err(|error| SurveyError::Witsml(error.to_string()))?;
+    let text = std::str::from_utf8(bytes)?;
     // Without document types there are no entities that grow.
     let options =
         ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text.trim_start_matches('\u{feff}'), options)
-        .map_err(|error| SurveyError::Witsml(error.to_string()))?;
+    let document = Document::parse_with_options(text.trim_start_matches('\u{feff}'), options)?;
     let is_station = |node: &Node<'_, '_>| {
         node.is_element() && node.tag_name().name().eq_ignore_ascii_case("trajectoryStation")
     };
@@ -43,7 +57,7 @@ pub(crate) fn trajectory(bytes: &[u8]) -> Result<Rows, SurveyError> {
             break;
         }
         if rows.len() > MOST_STATIONS {
-            return Err(SurveyError::TooMany);
+            return Err(WitsmlError::Size);
         }
         let mut value = |name: &str, quantity: &'static str, units: &[(&str, f64)]| {
             let element = station
@@ -80,7 +94,7 @@ pub(crate) fn trajectory(bytes: &[u8]) -> Result<Rows, SurveyError> {
         }
     }
     if rows.is_empty() && problems.is_empty() {
-        return Err(SurveyError::Witsml("it has no trajectoryStation".to_owned()));
+        return Err(WitsmlError::NoStations);
     }
     Ok((rows, columns, problems))
 }

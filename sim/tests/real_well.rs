@@ -56,9 +56,12 @@ fn position((model, equilibrium): &(Model, Equilibrium), depth: f64) -> [f64; 2]
 
 #[test]
 fn a_whole_string_off_bottom_hangs_and_turns_as_a_soft_string_does() {
-    // A soft string by minimum curvature in steps of 1 m, without flow, by two codes of other authors that agree to 0.05 % (torque 0.6 %): joints of the
-    // heavy-weight pipe alone, and all joints.
-    for (has_joints, hook_load, torque) in [(false, 746.91e3, 10.89e3), (true, 886.0e3, 12.3e3)] {
+    // A soft string by minimum curvature in steps of 1 m, without flow, by two codes of other authors that agree to 0.05 %, torque to 0.6 %, with a
+    // contact radius of the pipe's bodies. Joints of the heavy-weight pipe alone leave the torque there; if all joints stand off the wall, it lies between
+    // that radius and theirs, 1.325 times as large.
+    for (has_joints, hook_load, torque) in
+        [(false, 746.91e3, 10.56e3..11.22e3), (true, 886.0e3, 12.3e3..1.325 * 12.3e3)]
+    {
         let mut scenario = well();
         if !has_joints {
             scenario.string.sections[1].tool_joint = None;
@@ -70,8 +73,8 @@ fn a_whole_string_off_bottom_hangs_and_turns_as_a_soft_string_does() {
             mud.flow_rate = 0.0;
         }
         let equilibrium = Equilibrium::find(&Model::new(&scenario).expect("valid")).expect("rests");
-        // The string lies off the axis and bends: 0.2 % of the tension, and some per cent of the side force that turns it.
+        // The string lies off the axis and bends: 0.2 % of the tension, and 3 % of the side force that turns it.
         assert!((equilibrium.tension[0] / hook_load - 1.0).abs() < 5e-3, "{} N", equilibrium.tension[0]);
-        assert!((-equilibrium.torque[0] / torque - 1.0).abs() < 0.03, "{} N m", equilibrium.torque[0]);
+        assert!(torque.contains(&-equilibrium.torque[0]), "{} N m", equilibrium.torque[0]);
     }
 }

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::{DragMode, DragSettings, Margins, SoftString, SoftStringError};
-
-/// Largest number of cases of one broomstick: modes times friction factors times depths.
-pub const MOST_BROOMSTICK_CASES: usize = 5_000;
+use super::error::{MOST_BROOMSTICK_CASES, SoftStringError};
+use super::margins::Margins;
+use super::mode::{DragMode, DragSettings};
+use super::string::SoftString;
 
 /// Forces at the surface in one case, with the margins of the whole string.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]

@@ -4,7 +4,9 @@ use drillsweep_scenario::Hole;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::{DragMode, DragSettings, SoftString, SoftStringError};
+use super::error::SoftStringError;
+use super::mode::{DragMode, DragSettings};
+use super::string::SoftString;
 
 /// Step of the central differences of hook load and torque by a friction factor: their third derivatives leave some 1e-8 of the slope.
 const DIFFERENCE: f64 = 1e-4;

@@ -1,13 +1,28 @@
 //! Integration of tension and torque along a string in its hole.
 
+use super::error::SoftStringError;
 use super::mode::Motion;
-use super::{Part, SoftString};
+use super::string::{Part, SoftString};
 
 /// Largest turn of the hole in one step \[rad\]: RK4 then leaves less than 1e-11 of the tension a step, whatever the friction.
 const LARGEST_TURN: f64 = 0.02;
 
+/// Excess \[m\] of a bit depth over the string's length that is rounding.
+const DEPTH_ROUNDING: f64 = 1e-6;
+
 /// Distance below which two depths are one \[m\].
 const SAME_DEPTH: f64 = 1e-9;
+
+impl SoftString {
+    /// The string with its bit at a depth \[m\], shortened at its top.
+    pub(super) fn laid(&self, bit_depth: f64) -> Result<LaidString<'_>, SoftStringError> {
+        if bit_depth > 0.0 && bit_depth <= self.length + DEPTH_ROUNDING {
+            Ok(LaidString::new(self, bit_depth))
+        } else {
+            Err(SoftStringError::BitDepth { bit_depth, length: self.length })
+        }
+    }
+}
 
 /// A string with its bit at one depth, cut into steps on which weight, friction and curvature are constant.
 pub(super) struct LaidString<'a> {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use drillsweep_scenario::Operation;
 use serde::{Deserialize, Serialize};
 
-use super::{DragSettings, SoftStringError};
+use super::error::SoftStringError;
 
 /// Motion of a string and loads on its bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
@@ -23,6 +23,15 @@ pub enum DragMode {
     Slide,
     /// Rotating off bottom with an axial speed, up or down.
     Ream,
+}
+
+/// Settings of all cases.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DragSettings {
+    /// Weight of top drive and travelling block, part of the hook load \[N\].
+    pub travelling_weight: f64,
+    /// Axial speed of the mode `ream` \[m/s\], downhole positive.
+    pub axial_speed: Option<f64>,
 }
 
 /// Velocity of a string as a body.

@@ -6,6 +6,7 @@ use drillsweep_scenario::{
 use nalgebra::Vector3;
 
 use super::*;
+use crate::string::well::WellPath;
 
 const POUND: f64 = 4.448_221_615_260_5;
 const FOOT: f64 = 0.3048;

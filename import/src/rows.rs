@@ -33,7 +33,7 @@ pub struct CellProblem {
     pub column: Option<String>,
     /// Text of the cell, shortened.
     pub text: String,
-    /// What is wrong, in words.
+    /// Fault, in words.
     pub problem: String,
 }
 

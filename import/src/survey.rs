@@ -123,7 +123,7 @@ pub enum SurveyError {
         heading: String,
         /// Quantity of the column.
         quantity: &'static str,
-        /// What is valid, in words.
+        /// Valid units, in words.
         valid: String,
     },
     /// The file has fewer than two usable stations.

@@ -34,13 +34,13 @@ fn a_step_beyond_stability_is_found_at_any_point() {
 #[test]
 fn a_reference_that_cannot_run_a_later_point_is_found() {
     let of = |pieces: u32| {
-        let survey = [0.0, 2e4]
+        let survey = [0.0, 4e4]
             .map(|depth| json!({"measured_depth": depth, "inclination_deg": 0.0, "azimuth_deg": 0.0}));
         json!({"preset": "paper-200m-damped", "set": {"accuracy": "draft", "well.survey": survey}, "outputs": "summary",
             "axes": {"string.sections[1].count": {"values": [9, pieces]}}, "verify": 2})
     };
     assert_eq!(refused(of(10)), []);
-    let found = refused(of(1900));
+    let found = refused(of(3000));
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0].0, "/verify");
     assert!(found[0].1.starts_with("not valid at the accuracy `reference`: mesh: "), "{found:?}");

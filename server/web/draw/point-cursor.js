@@ -21,7 +21,8 @@ const STEPS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDo
 /**
  * @param {HTMLElement} picture
  * @param {(ordinal: number) => void} open
- * @returns {{element: HTMLElement, over: (places: Place[]) => void}} what it says, and what tells it of the points that are drawn
+ * @returns {{element: HTMLElement, over: (places: Place[]) => {annotations: object[]}}} its status text; `over` takes
+ *   the points of a drawing and returns the layout of the label, which stays at its point when a picture is drawn again
  */
 export function keyboard(picture, open) {
   const element = h("p", { class: "visually-hidden", role: "status" });
@@ -60,14 +61,20 @@ export function keyboard(picture, open) {
     now = next(step);
     if (!now) return;
     element.textContent = now.text.replaceAll("<br>", ", ");
-    adjust(picture, { annotations: [{ x: now.x, y: now.y, text: now.text, showarrow: true }] });
+    adjust(picture, label());
   });
+
+  function label() {
+    return { annotations: now ? [{ x: now.x, y: now.y, text: now.text, showarrow: true }] : [] };
+  }
 
   return {
     element,
     over: (drawn) => {
       places = drawn;
-      now = undefined;
+      now = drawn.find(({ ordinal }) => ordinal === now?.ordinal);
+      if (!now) element.textContent = "";
+      return label();
     },
   };
 }

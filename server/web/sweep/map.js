@@ -289,8 +289,8 @@ export class SweepMap {
       },
       line: { color: LINES[0] },
     };
-    this.#cursor.over(points.filter(({ y }) => y !== null && y !== undefined));
     await this.#draw([trace], {
+      ...this.#cursor.over(points.filter(({ y }) => y !== null && y !== undefined)),
       xaxis: this.#axisLayout(x),
       yaxis: {
         title: this.#context.depths.title(colour),
@@ -335,12 +335,11 @@ export class SweepMap {
       const name = this.#own ? "uncertain" : NOT_SETTLED;
       traces.push(crosses(name, doubtful, isClass ? rimmed : thin, chosen, slice, at));
     }
-    this.#cursor.over(places);
     const axis = (/** @type {string} */ name, /** @type {Values} */ column) => ({
       ...this.#axisLayout(name),
       ...(slice.isGrid ? { range: rangeOf(this.#context, name, rows, column, at) } : {}),
     });
-    await this.#draw(traces, { xaxis: axis(x, xs), yaxis: axis(y, ys) });
+    await this.#draw(traces, { ...this.#cursor.over(places), xaxis: axis(x, xs), yaxis: axis(y, ys) });
   }
 
   /** @param {any[]} traces @param {any} layout */

@@ -893,6 +893,14 @@ def test_arrow_keys_go_over_the_points_of_a_map(opened: Opens, named: Sweep) -> 
         page.keyboard.press(key)
         expect(said).to_contain_text(f"flow rate {flow_rate} m³/s")
         expect(said).to_contain_text(re.compile(f"density {density} kg/m³"))
+    # A picture that is drawn again keeps the point.
+    page.get_by_label("Drawn as").select_option("contour")
+    expect(page.get_by_role("region", name="Map").locator("figcaption")).to_contain_text("are interpolated")
+    expect(said).to_contain_text("flow rate 0.01 m³/s")
+    picture.focus()
+    page.keyboard.press("ArrowUp")
+    expect(said).to_contain_text(re.compile("flow rate 0.01 m³/s.*density 1800 kg/m³"))
+    page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     page.wait_for_url(f"**/sweeps/{named.id}/points/1*")
 

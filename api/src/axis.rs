@@ -42,7 +42,7 @@ pub enum Scale {
     /// Equal differences: `from + (to - from) i / (count - 1)`.
     #[default]
     Linear,
-    /// Equal ratios: `from (to / from)^(i / (count - 1))`; both ends must be positive.
+    /// Equal ratios: `from (to / from)^(i / (count - 1))`; both ends must be positive, or both negative.
     Log,
 }
 
@@ -97,9 +97,12 @@ impl Axis {
                     problems.push(("/count", (*count).into(), detail));
                 }
                 if *scale == Scale::Log {
+                    // Both ends may be negative, as weights on bit are.
+                    let are_negative = *from < 0.0 && *to < 0.0;
                     for (member, end) in [("/from", *from), ("/to", *to)] {
-                        if end <= 0.0 {
-                            let detail = "must be positive on a logarithmic scale".to_owned();
+                        if end <= 0.0 && !are_negative {
+                            let detail =
+                                "must be positive on a logarithmic scale, or both ends negative".to_owned();
                             problems.push((member, end.into(), detail));
                         }
                     }

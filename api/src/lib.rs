@@ -23,6 +23,7 @@ pub mod refine;
 pub mod refinement;
 pub mod request;
 pub mod service;
+mod signs;
 pub mod sweep;
 pub mod time_span;
 pub mod torque_drag;
@@ -50,6 +51,7 @@ pub use service::{
     Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
     ScenarioFile, ScenarioFormat, ScenarioList, Session, Worker, WorkerList,
 };
+pub use signs::Signs;
 pub use sweep::{
     ColumnEntry, ColumnKind, ColumnList, PointCounts, Sweep, SweepDeletion, SweepLinks, SweepList,
     SweepState, SweepVerification, WaitingFor,

@@ -50,6 +50,16 @@ impl ListedPoints {
         &self.values[index * self.names.len()..][..self.names.len()]
     }
 
+    /// Changes all values, by the name of the parameter.
+    pub(crate) fn change(&mut self, change: impl Fn(&AxisName, f64) -> f64) {
+        let count = self.names.len().max(1);
+        for (index, value) in self.values.iter_mut().enumerate() {
+            if let Some(name) = self.names.get(index % count) {
+                *value = change(name, *value);
+            }
+        }
+    }
+
     /// Indices of points with other parameters than the first.
     pub(crate) fn uneven(&self) -> &[usize] {
         &self.uneven

@@ -1,5 +1,6 @@
 //! Errors on the wire: RFC 9457 problem details, all of a request's problems at once.
 
+use drillsweep_quantity::entry;
 use drillsweep_scenario::Problem;
 use drillsweep_table::Table;
 use serde::{Deserialize, Serialize};
@@ -237,7 +238,8 @@ impl ProblemDetails {
         }
     }
 
-    /// A body that is not JSON, or not of the documented form at the place of the JSON Pointer.
+    /// A body that is not JSON, or not of the documented form at the place of the JSON Pointer. A unit that does not fit there makes the request
+    /// invalid, as in `set`, which is read once the scenario is known.
     pub fn malformed_body(pointer: String, error: &serde_json::Error) -> Self {
         let (message, position) =
             (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
@@ -253,6 +255,9 @@ impl ProblemDetails {
             (None, format!("not JSON: {message}"))
         };
         let error = FieldProblem { pointer: Some(pointer), parameter: None, got, detail };
+        if entry::is_refusal(&error.detail) {
+            return Self::invalid_request(vec![error]);
+        }
         // A problem of the whole body needs no place.
         let text = error.to_string();
         let text = text.strip_prefix(": ").unwrap_or(&text);

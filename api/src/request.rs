@@ -14,6 +14,7 @@ use crate::bounded;
 use crate::listed::ListedPoints;
 use crate::problem::{FieldProblem, ProblemDetails};
 use crate::refinement::Refinement;
+use crate::signs::{self, Signs};
 
 /// A sweep: a scenario, changes to it, and the axes along which it is varied.
 ///
@@ -96,6 +97,10 @@ pub struct SweepRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(exclusive_minimum = 0.0, example = 0.05)]
     pub verify: Option<f64>,
+    /// Signs of `operation.weight_on_bit` and `operation.torque_on_bit` in this request: with `driller` compression, and torque that opposes clockwise
+    /// rotation, are positive. The request is stored in the signs of the model; values of a preset are in these. Absent means `model`.
+    #[serde(default, skip_serializing_if = "Signs::is_model")]
+    pub signs: Signs,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
@@ -141,6 +146,10 @@ pub struct RunRequest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(example = "full")]
     pub outputs: Option<Outputs>,
+    /// Signs of `operation.weight_on_bit` and `operation.torque_on_bit` in this request: with `driller` compression, and torque that opposes clockwise
+    /// rotation, are positive. The request is stored in the signs of the model; values of a preset are in these. Absent means `model`.
+    #[serde(default, skip_serializing_if = "Signs::is_model")]
+    pub signs: Signs,
     /// Higher goes first among the sweeps of one owner, -10 to 10; 0 unless given. It takes nothing from other owners, who take
     /// turns.
     #[serde(default)]
@@ -151,7 +160,7 @@ pub struct RunRequest {
 impl From<RunRequest> for SweepRequest {
     /// The sweep of one point that a run is.
     fn from(run: RunRequest) -> Self {
-        let RunRequest { name, owner, tags, preset, scenario, set, outputs, priority } = run;
+        let RunRequest { name, owner, tags, preset, scenario, set, outputs, signs, priority } = run;
         SweepRequest {
             name,
             owner,
@@ -160,6 +169,7 @@ impl From<RunRequest> for SweepRequest {
             scenario,
             set,
             outputs,
+            signs,
             priority,
             ..SweepRequest::default()
         }
@@ -195,12 +205,25 @@ pub struct AppendRequest {
     /// unless given, below 2^32 with the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip: Option<u32>,
+    /// Signs of `operation.weight_on_bit` and `operation.torque_on_bit` in this request, as in [`SweepRequest`]; absent means `model`.
+    #[serde(default, skip_serializing_if = "Signs::is_model")]
+    pub signs: Signs,
     /// Points between neighbours whose classes or values differ, in place of a design.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refine: Option<Refinement>,
 }
 
 impl AppendRequest {
+    /// The same request in the signs of the model.
+    #[must_use]
+    pub fn in_model_signs(mut self) -> Self {
+        if !std::mem::take(&mut self.signs).is_model() {
+            signs::turn_axes(&mut self.axes);
+            signs::turn_points(&mut self.points);
+        }
+        self
+    }
+
     /// The refinement; absent if a design makes the points.
     ///
     /// # Errors
@@ -224,7 +247,7 @@ impl AppendRequest {
     /// # Errors
     /// The parameters are not those of the sweep.
     pub fn of(self, original: &SweepRequest) -> Result<SweepRequest, Box<ProblemDetails>> {
-        let AppendRequest { design, axes, points, samples, seed, skip, refine: _ } = self;
+        let AppendRequest { design, axes, points, samples, seed, skip, signs: _, refine: _ } = self;
         // The sample is drawn from the points that the sweep lacks, once they are known.
         let request =
             SweepRequest { design, axes, points, samples, seed, skip, verify: None, ..original.clone() };
@@ -249,6 +272,18 @@ impl AppendRequest {
 }
 
 impl SweepRequest {
+    /// The same request in the signs of the model.
+    #[must_use]
+    pub fn in_model_signs(mut self) -> Self {
+        if !std::mem::take(&mut self.signs).is_model() {
+            self.scenario.iter_mut().for_each(|scenario| signs::turn_scenario(scenario));
+            self.set.iter_mut().for_each(|(path, value)| signs::turn_change(path, value));
+            signs::turn_axes(&mut self.axes);
+            signs::turn_points(&mut self.points);
+        }
+        self
+    }
+
     /// Names of the swept parameters.
     pub fn names(&self) -> impl Iterator<Item = &AxisName> {
         self.axes.keys().chain(self.points.names())

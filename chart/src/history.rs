@@ -1,13 +1,13 @@
 //! The picture of motion over time.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Name, Quantity, UnitSystem, Variant, units};
+use drillsweep_quantity::{Name, Quantity, Unit, UnitChoice, Variant, units};
 use drillsweep_table::{Column, Table};
 
 use crate::error::ChartError;
 use crate::picture::{Drawing, Line, LinePlot};
-use crate::place::{Place, at_place, grouped};
-use crate::shown::{Shown, node_of, numbers, shown_in, with_unit};
+use crate::place::{Place, at_depth, at_place};
+use crate::shown::{Shown, node_of, numbers, with_unit};
 
 /// The columns of a history that its picture shows, out of its `layout`: the time, and u and v, and rotation speed and torque of the lowest
 /// node, or the `fields` that are given.
@@ -47,23 +47,23 @@ pub fn history(
     places: &[Place],
     bit: Option<&Bit>,
     title: &str,
+    choice: &UnitChoice,
 ) -> Result<Drawing, ChartError> {
     let names = lines_of_history(table, fields);
-    let shown = Shown::of(table, &names, UnitSystem::Si)?;
-    let y_label = shown.label(places);
+    let shown = Shown::of(table, &names, choice)?;
+    let y_label = shown.label(places, choice);
     let rotation = match fields {
         Some(_) => Rotation::default(),
-        None => Rotation::of(table, places, bit),
+        None => Rotation::of(table, places, bit, choice),
     };
-    let own = node_of(table, UnitSystem::Si);
+    let own = node_of(table, choice);
     let subtitle = if rotation.panels.is_empty() && own.is_empty() { &rotation.remark } else { &own };
-    let line_name = |name: &str| at_place(name, places);
+    let line_name = |name: &str| at_place(name, places, choice);
     let mut drawing = over_time(table, shown, &y_label, &line_name, [title, subtitle])?;
     for (number, Panel { quantity, table, column, line }) in rotation.panels.iter().enumerate() {
-        // Drillers read rotation speeds in rpm.
         let unit = match quantity.units {
-            Some(units) if *units == units::ANGULAR_SPEED => Some(units.field),
-            _ => shown_in(column, UnitSystem::Si),
+            Some(units) if *units == units::ANGULAR_SPEED => Some(rotation_unit(column, choice)),
+            _ => choice.shown(column),
         };
         let shown = Shown::within(table, &[column], unit)?;
         let y_label = match unit {
@@ -76,13 +76,18 @@ pub fn history(
     Ok(drawing)
 }
 
+/// Unit of a rotation speed, which drillers read in rpm in any system.
+fn rotation_unit(column: &str, choice: &UnitChoice) -> Unit {
+    choice.named(column).unwrap_or(units::ANGULAR_SPEED.field)
+}
+
 /// Rotation speed of a node over time \[rpm\], as drillers read it in any system.
 ///
 /// # Errors
 /// A problem that names the columns there are, if `column` is none of them.
 pub fn rotation(table: &Table, column: &str, title: &str) -> Result<Drawing, ChartError> {
     let shown = Shown::within(table, &[column], Some(units::ANGULAR_SPEED.field))?;
-    let y_label = shown.label(&[]);
+    let y_label = shown.label(&[], &UnitChoice::default());
     over_time(table, shown, &y_label, &|_| String::new(), [title, ""])
 }
 
@@ -108,13 +113,13 @@ struct Panel<'t> {
 
 impl<'t> Rotation<'t> {
     /// Label of the bit, or else of the lowest node of the history.
-    fn of(history: &'t Table, places: &[Place], bit: Option<&'t Bit>) -> Self {
+    fn of(history: &'t Table, places: &[Place], bit: Option<&'t Bit>, choice: &UnitChoice) -> Self {
         let lowest = ROTATION.map(|quantity| lowest(history, quantity));
         let node = lowest.into_iter().flatten().find_map(|name| Name::parse(name)?.place?.node());
-        let at_node = |_: &Quantity, name: &str| at_place(name, places);
+        let at_node = |_: &Quantity, name: &str| at_place(name, places, choice);
         let Some(bit) = bit else { return Self::from_columns(history, lowest, at_node) };
-        let depth = grouped(bit.measured_depth);
-        let at_bit = |quantity: &Quantity, _: &str| format!("{} at the bit, {depth} m MD", quantity.label);
+        let depth = at_depth(bit.measured_depth, choice);
+        let at_bit = |quantity: &Quantity, _: &str| format!("{} at the bit, {depth}", quantity.label);
         match (&bit.snapshots, node) {
             (_, Some(node)) if node == bit.node as usize => Self::from_columns(history, lowest, at_bit),
             (Some(snapshots), _) => {
@@ -122,7 +127,7 @@ impl<'t> Rotation<'t> {
             }
             (None, Some(_)) => {
                 let remark =
-                    format!("Rotation at the bit, at {depth} m MD, was not recorded (recording.snapshots).");
+                    format!("Rotation at the bit, at {depth}, was not recorded (recording.snapshots).");
                 Rotation { remark, ..Self::from_columns(history, lowest, at_node) }
             }
             (None, None) => Rotation::default(),
@@ -161,7 +166,7 @@ fn over_time(
     let plot = LinePlot {
         title: title.to_owned(),
         subtitle: subtitle.to_owned(),
-        x_label: with_unit(TIME.name, UnitSystem::Si),
+        x_label: with_unit(TIME.name, &UnitChoice::default()),
         y_label: y_label.to_owned(),
         lines: shown.columns.into_iter().map(line).collect(),
         ..LinePlot::default()
@@ -220,7 +225,8 @@ mod tests {
     #[test]
     fn history_of_a_twisting_string_shows_rotation_speed_and_torque_of_the_bit() {
         let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
-        let picture = |table: &Table| history(table, None, &places, None, "").unwrap();
+        let picture =
+            |table: &Table| history(table, None, &places, None, "", &UnitChoice::default()).unwrap();
         let still = picture(&twisting(0.0, -1e3));
         let torque_alone = picture(&twisting(0.0, -4e3));
         let twisted = picture(&twisting(ONCE_A_SECOND, -4e3));
@@ -233,11 +239,19 @@ mod tests {
             "{svg}"
         );
         assert!(svg.contains(">60<") && svg.contains(">−4<") && twisted.png(400).is_ok(), "{svg}");
+        let field = UnitChoice::parse("field").unwrap();
+        let table = twisting(ONCE_A_SECOND, -4e3);
+        let field = history(&table, None, &places, None, "", &field).unwrap().svg();
+        for words in ["rotation speed at 656.2 ft MD", ">rotation speed [rpm]<", ">torque [ft lbf]<", "[in]<"]
+        {
+            assert!(field.contains(words), "{words} in {field}");
+        }
         let layout = twisting(1.0, 1.0);
         let shown = shown_of_history(&layout, None).unwrap();
         let names: Vec<_> = shown.columns.keys().map(String::as_str).collect();
         assert_eq!(names, ["u_10", "rotation_speed_49", "torque_49", "time"]);
-        let chosen = history(&layout, Some(&["u_10".to_owned()]), &places, None, "").unwrap();
+        let chosen =
+            history(&layout, Some(&["u_10".to_owned()]), &places, None, "", &UnitChoice::default()).unwrap();
         assert!(!chosen.svg().contains("torque"));
     }
 
@@ -245,7 +259,7 @@ mod tests {
     fn rotation_of_the_bit_is_shown_or_its_absence_noted() {
         let picture = |node, snapshots, table: &Table| {
             let bit = Bit { node, measured_depth: 201.5, snapshots };
-            history(table, None, &[], Some(&bit), "").unwrap()
+            history(table, None, &[], Some(&bit), "", &UnitChoice::default()).unwrap()
         };
         let table = twisting(ONCE_A_SECOND, -4e3);
         // Twice around a second, under other torques.

@@ -1,7 +1,7 @@
 //! The picture of a node's path across its hole.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{UnitSystem, units};
+use drillsweep_quantity::{UnitChoice, units};
 use drillsweep_table::Table;
 
 use crate::error::ChartError;
@@ -27,9 +27,9 @@ pub fn orbit(
     hole: &Hole,
     title: &str,
     zoom: Option<bool>,
-    system: UnitSystem,
+    choice: &UnitChoice,
 ) -> Result<Drawing, ChartError> {
-    let unit = units::WIDTH.of(system);
+    let unit = choice.shown(U.name).unwrap_or(units::WIDTH.shown);
     let (time, u, v) = (numbers(table, TIME.name)?, numbers(table, U.name)?, numbers(table, V.name)?);
     let window = match (time.first(), time.last()) {
         (Some(first), Some(last)) => format!(", {first:.2} to {last:.2} s"),
@@ -37,7 +37,7 @@ pub fn orbit(
     };
     let plot = OrbitPlot {
         title: title.to_owned(),
-        subtitle: format!("{}{window}; the mark is the end", node_of(table, system)),
+        subtitle: format!("{}{window}; the mark is the end", node_of(table, choice)),
         path: u.iter().zip(v).map(|(u, v)| [unit.of(*u), unit.of(v)]).collect(),
         wall: hole.clearance.map(|clearance| unit.of(clearance)),
         low_side: hole.low_side,

@@ -1,7 +1,7 @@
 //! Positions of nodes in the well, in words.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Name, Quantity};
+use drillsweep_quantity::{Name, Quantity, UnitChoice};
 
 use crate::words::words;
 
@@ -17,7 +17,7 @@ pub struct Place {
 }
 
 /// Description of a column; of a node that is among the `places`, with its position and its direction of motion.
-pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
+pub(crate) fn at_place(name: &str, places: &[Place], choice: &UnitChoice) -> String {
     let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);
     };
@@ -25,11 +25,11 @@ pub(crate) fn at_place(name: &str, places: &[Place]) -> String {
     let Some(depth) = of_name.depth().or(known.map(|place| place.measured_depth)) else {
         return words(name);
     };
-    let depth = grouped(depth);
+    let depth = at_depth(depth, choice);
     let direction = known.map(|place| direction(parsed.quantity, place.low_side)).unwrap_or_default();
     let elsewhere = Name { place: None, window: None, ..parsed };
     let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
-    format!("{elsewhere} at {depth} m MD{direction}{window}")
+    format!("{elsewhere} at {depth}{direction}{window}")
 }
 
 /// Sign of a lateral displacement or speed, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
@@ -63,8 +63,14 @@ fn direction(quantity: &Quantity, low_side: Option<f64>) -> String {
     format!(", lateral, {towards}")
 }
 
-/// A depth in metres to the decimetre, whole ones from 1000 m on with their thousands apart.
-pub(crate) fn grouped(depth: f64) -> String {
+/// A measured depth in words: `57.7 m MD`.
+pub(crate) fn at_depth(depth: f64, choice: &UnitChoice) -> String {
+    let unit = choice.depth();
+    format!("{} {} MD", grouped(unit.of(depth)), unit.symbol)
+}
+
+/// A depth to a tenth, whole ones from 1000 on with their thousands apart.
+fn grouped(depth: f64) -> String {
     let whole = depth.round() as i64;
     if whole >= 1000 { format!("{} {:03}", whole / 1000, whole % 1000) } else { format!("{depth:.1}") }
 }
@@ -76,7 +82,9 @@ mod tests {
     #[test]
     fn legends_show_the_place_of_a_node_and_its_direction() {
         let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
-        let label = |name, low_side: Option<f64>| at_place(name, &place(low_side.map(f64::to_radians)));
+        let label = |name, low_side: Option<f64>| {
+            at_place(name, &place(low_side.map(f64::to_radians)), &UnitChoice::default())
+        };
         // Seen down the hole with the low side down, a turn from u to v is clockwise: from down to the left.
         for (name, low_side, words) in [
             ("u_10", Some(0.0), "u at 3 412 m MD, lateral, to the low side"),
@@ -94,6 +102,8 @@ mod tests {
         ] {
             assert_eq!(label(name, low_side), words);
         }
+        let field = UnitChoice::parse("field").unwrap();
+        assert_eq!(at_place("u_10", &place(None), &field), "u at 11 195 ft MD, lateral, along e1");
         assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
     }
 }

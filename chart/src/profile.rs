@@ -1,6 +1,6 @@
 //! The picture of values along the string.
 
-use drillsweep_quantity::UnitSystem;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::*;
 use drillsweep_table::Table;
 
@@ -18,7 +18,7 @@ pub fn profile(
     table: &Table,
     fields: Option<&[String]>,
     title: &str,
-    system: UnitSystem,
+    choice: &UnitChoice,
 ) -> Result<Drawing, ChartError> {
     let fallback = if table.columns.contains_key(FRICTION_COEFFICIENT.name) {
         FRICTION_COEFFICIENT.name
@@ -35,8 +35,8 @@ pub fn profile(
     } else {
         &[MEASURED_DEPTH_TOP.name, MEASURED_DEPTH_BOTTOM.name]
     };
-    let depths = ends.iter().map(|name| axis(table, name, system)).collect::<Result<Vec<_>, _>>()?;
-    let shown = Shown::of(table, &names, system)?;
+    let depths = ends.iter().map(|name| axis(table, name, choice)).collect::<Result<Vec<_>, _>>()?;
+    let shown = Shown::of(table, &names, choice)?;
     let line = |(name, values): (&str, Vec<f64>)| Line {
         name: words(name),
         points: values
@@ -48,8 +48,8 @@ pub fn profile(
     };
     let plot = LinePlot {
         title: title.to_owned(),
-        x_label: shown.label(&[]),
-        y_label: with_unit(MEASURED_DEPTH.name, system),
+        x_label: shown.label(&[], choice),
+        y_label: with_unit(MEASURED_DEPTH.name, choice),
         lines: shown.columns.into_iter().map(line).collect(),
         vertical: VerticalAxis::Depth,
         ..LinePlot::default()
@@ -75,17 +75,17 @@ mod tests {
             .with("friction_coefficient", column(&[0.01, 0.02]))
             .with("torque", column(&[9940.0, 5219.0]))
             .with("regime", Column::Text(vec![None, None]));
-        let svg = profile(&table, None, "C_f", UnitSystem::Si).unwrap().svg();
+        let svg = profile(&table, None, "C_f", &UnitChoice::default()).unwrap().svg();
         assert!(svg.contains("friction coefficient C_f") && svg.contains("measured depth [m]"));
         assert!(
-            profile(&table, Some(&["torque".to_owned()]), "", UnitSystem::Si)
+            profile(&table, Some(&["torque".to_owned()]), "", &UnitChoice::default())
                 .unwrap()
                 .svg()
                 .contains("torque [kN m]")
         );
         let refused = |fields: &[&str]| {
             let fields: Vec<String> = fields.iter().map(|field| (*field).to_owned()).collect();
-            profile(&table, Some(&fields), "", UnitSystem::Si).unwrap_err()
+            profile(&table, Some(&fields), "", &UnitChoice::default()).unwrap_err()
         };
         let name = "friction_coefficient".to_owned();
         assert_eq!(refused(&["torque", "friction_coefficient"]), ChartError::OtherUnit { name });

@@ -1,7 +1,7 @@
 //! Columns of a table in the words and units in which engineers read them.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Name, Quantity, Unit, UnitSystem, units};
+use drillsweep_quantity::{Quantity, Unit, UnitChoice, units};
 use drillsweep_table::Table;
 use indexmap::IndexMap;
 use serde_json::Value;
@@ -18,9 +18,9 @@ pub(crate) struct Shown<'t> {
 }
 
 impl<'t> Shown<'t> {
-    /// The numeric columns of these names, in the units of a system; they must have one unit.
-    pub(crate) fn of(table: &'t Table, names: &[&str], system: UnitSystem) -> Result<Self, ChartError> {
-        Self::within(table, names, names.first().and_then(|name| shown_in(name, system)))
+    /// The numeric columns of these names, in the unit of the first; they must be kept in one unit.
+    pub(crate) fn of(table: &'t Table, names: &[&str], choice: &UnitChoice) -> Result<Self, ChartError> {
+        Self::within(table, names, names.first().and_then(|name| choice.shown(name)))
     }
 
     /// The same in a unit of one's own.
@@ -47,9 +47,9 @@ impl<'t> Shown<'t> {
     }
 
     /// Label of the axis; for a column of one of the `places`, with its position.
-    pub(crate) fn label(&self, places: &[Place]) -> String {
+    pub(crate) fn label(&self, places: &[Place], choice: &UnitChoice) -> String {
         let name = match self.columns.as_slice() {
-            [(only, _)] => at_place(only, places),
+            [(only, _)] => at_place(only, places, choice),
             several => common_words(several.iter().map(|(name, _)| *name)),
         };
         match self.unit {
@@ -59,14 +59,9 @@ impl<'t> Shown<'t> {
     }
 }
 
-/// The unit in which engineers read a column; none of ratios and numbers of things.
-pub(crate) fn shown_in(name: &str, system: UnitSystem) -> Option<Unit> {
-    Name::parse(name)?.units().filter(|units| *units != &units::RATIO).map(|units| units.of(system))
-}
-
 /// A value of a column in the unit in which it is shown.
-pub(crate) fn amount(name: &str, value: f64, system: UnitSystem) -> String {
-    match shown_in(name, system) {
+pub(crate) fn amount(name: &str, value: f64, choice: &UnitChoice) -> String {
+    match choice.shown(name) {
         Some(unit) => format!("{} {}", three_digits(unit.of(value)), unit.symbol),
         None => three_digits(value),
     }
@@ -83,31 +78,26 @@ fn common_words<'n>(names: impl Iterator<Item = &'n str>) -> String {
     }
 }
 
-/// A length across the hole in the unit in which it is shown.
-pub(crate) fn width(value: f64) -> f64 {
-    units::WIDTH.shown.of(value)
-}
-
-pub(crate) fn with_unit(name: &str, system: UnitSystem) -> String {
-    match shown_in(name, system) {
+pub(crate) fn with_unit(name: &str, choice: &UnitChoice) -> String {
+    match choice.shown(name) {
         Some(unit) => format!("{} [{}]", words(name), unit.symbol),
         None => words(name),
     }
 }
 
 /// The values of an axis, in the unit in which it is shown.
-pub(crate) fn axis(table: &Table, name: &str, system: UnitSystem) -> Result<Vec<f64>, ChartError> {
+pub(crate) fn axis(table: &Table, name: &str, choice: &UnitChoice) -> Result<Vec<f64>, ChartError> {
     let values = numbers(table, name)?;
-    let unit = shown_in(name, system);
+    let unit = choice.shown(name);
     Ok(values.into_iter().map(|value| unit.map_or(value, |unit| unit.of(value))).collect())
 }
 
-/// The node that a table is of, with its depth in the units of a system.
-pub(crate) fn node_of(table: &Table, system: UnitSystem) -> String {
+/// The node that a table is of, with its depth.
+pub(crate) fn node_of(table: &Table, choice: &UnitChoice) -> String {
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     match (attribute(NODE.name), attribute(MEASURED_DEPTH.name)) {
         (Some(node), Some(depth)) => {
-            let unit = units::DEPTH.of(system);
+            let unit = choice.depth();
             format!("node {node} at {:.2} {}", unit.of(depth), unit.symbol)
         }
         _ => String::new(),
@@ -123,10 +113,9 @@ pub(crate) fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, ChartError>
 }
 
 /// The title of a picture: its subject, with the parameters.
-pub fn caption(what: &str, parameters: &IndexMap<String, f64>) -> String {
-    let value = |(name, value): (&String, &f64)| {
-        format!(", {} {}", words(name), amount(name, *value, UnitSystem::Si))
-    };
+pub fn caption(what: &str, parameters: &IndexMap<String, f64>, choice: &UnitChoice) -> String {
+    let value =
+        |(name, value): (&String, &f64)| format!(", {} {}", words(name), amount(name, *value, choice));
     let values: String = parameters.iter().map(value).collect();
     format!("{what}{values}")
 }

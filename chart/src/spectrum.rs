@@ -1,14 +1,14 @@
 //! The picture of a full spectrum.
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{UnitSystem, units};
+use drillsweep_quantity::{UnitChoice, units};
 use drillsweep_table::Table;
 use serde_json::Value;
 
 use crate::error::ChartError;
 use crate::picture::axis::three_digits;
 use crate::picture::{Drawing, Label, Line, LinePlot, Shade, VerticalAxis};
-use crate::shown::{node_of, numbers, width, with_unit};
+use crate::shown::{node_of, numbers, with_unit};
 use crate::words::words;
 
 /// Lines of a spectrum that are named in its picture.
@@ -22,7 +22,9 @@ const MEAN_BINS: f64 = 2.5;
 ///
 /// # Errors
 /// The table is not a spectrum.
-pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
+pub fn spectrum(table: &Table, title: &str, choice: &UnitChoice) -> Result<Drawing, ChartError> {
+    let unit = choice.shown(AMPLITUDE.name).unwrap_or(units::WIDTH.shown);
+    let width = |value: f64| unit.of(value);
     let (frequency, amplitude) = (numbers(table, FREQUENCY.name)?, numbers(table, AMPLITUDE.name)?);
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     let mean_width = MEAN_BINS * attribute("resolution").unwrap_or(0.0);
@@ -47,7 +49,12 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
     });
     let label = |peak: &Value| {
         let (frequency, amplitude) = (peak["frequency"].as_f64()?, width(peak["amplitude"].as_f64()?));
-        let text = format!("{frequency:+.2} Hz, {amplitude:.2} mm").replace('-', "−");
+        // Hundredths of a millimetre, three digits of other units.
+        let size = match unit == units::WIDTH.shown {
+            true => format!("{amplitude:.2}"),
+            false => three_digits(amplitude),
+        };
+        let text = format!("{frequency:+.2} Hz, {size} {}", unit.symbol).replace('-', "−");
         (is_motion(frequency) && is_resolved(frequency))
             .then(|| Label { at: [frequency, curve_at(frequency)], text })
     };
@@ -56,11 +63,11 @@ pub fn spectrum(table: &Table, title: &str) -> Result<Drawing, ChartError> {
         title: title.to_owned(),
         subtitle: format!(
             "{}, {} samples, {window} window, without the mean; + forward, − backward whirl",
-            node_of(table, UnitSystem::Si),
+            node_of(table, choice),
             attribute("samples").unwrap_or(0.0)
         ),
-        x_label: with_unit(FREQUENCY.name, UnitSystem::Si),
-        y_label: format!("{} [{}]", words(AMPLITUDE.name), units::WIDTH.shown.symbol),
+        x_label: with_unit(FREQUENCY.name, &UnitChoice::default()),
+        y_label: format!("{} [{}]", words(AMPLITUDE.name), unit.symbol),
         lines: vec![Line { points: points.collect(), ..Line::default() }],
         vertical: VerticalAxis::FromZero,
         labels: peaks.iter().filter_map(label).take(NAMED_LINES).collect(),
@@ -108,8 +115,10 @@ mod tests {
                 "peaks",
                 json!([{"frequency": 0.0, "amplitude": 0.037}, {"frequency": 2.04, "amplitude": 0.0035}]),
             );
-        let svg = spectrum(&table, "spectrum").unwrap().svg();
+        let svg = spectrum(&table, "spectrum", &UnitChoice::default()).unwrap().svg();
         assert!(svg.contains("+2.04 Hz, 3.50 mm") && svg.contains("node 49 at 57.73 m"), "{svg}");
+        let field = spectrum(&table, "", &UnitChoice::parse("field").unwrap()).unwrap().svg();
+        assert!(field.contains("+2.04 Hz, 0.138 in") && field.contains("node 49 at 189.40 ft"), "{field}");
         assert!(!svg.contains("37.00 mm") && !svg.contains(">30<"), "the mean does not stretch the axis");
     }
 
@@ -123,11 +132,13 @@ mod tests {
             .attribute("resolution", 0.1)
             .attribute("peaks", peaks.to_vec());
         let words = "not resolved by the step";
-        let unmarked = spectrum(&table, "").unwrap().svg();
+        let unmarked = spectrum(&table, "", &UnitChoice::default()).unwrap().svg();
         assert!(unmarked.contains("+6.00 Hz") && !unmarked.contains(words));
-        let all = spectrum(&table.clone().attribute("resolved_hz", 20.0), "").unwrap().svg();
+        let all = spectrum(&table.clone().attribute("resolved_hz", 20.0), "", &UnitChoice::default())
+            .unwrap()
+            .svg();
         assert!(!all.contains(words), "all that is shown is resolved");
-        let drawing = spectrum(&table.attribute("resolved_hz", 5.0), "").unwrap();
+        let drawing = spectrum(&table.attribute("resolved_hz", 5.0), "", &UnitChoice::default()).unwrap();
         let svg = drawing.svg();
         assert!(svg.contains(words) && svg.contains("(±5") && svg.contains(r#"class="shade""#), "{svg}");
         assert!(svg.contains("−2.00 Hz") && !svg.contains("+6.00 Hz"), "{svg}");

@@ -67,7 +67,7 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
             .collect(),
         unbalance: scenario.string.unbalance.iter().map(|mass| unit.of(mass.measured_depth)).collect(),
         strips: strips.into_iter().map(|ends| ends.map(|depth| unit.of(depth))).collect(),
-        depth_label: with_unit(MEASURED_DEPTH.name, system),
+        depth_label: with_unit(MEASURED_DEPTH.name, &system.into()),
     };
     sketch.drawing()
 }

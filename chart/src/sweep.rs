@@ -2,7 +2,7 @@
 
 use drillsweep_api::view::verification::{Findings, is_bias_column};
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{CLASSES, Class, UnitSystem};
+use drillsweep_quantity::{CLASSES, Class, UnitChoice};
 use drillsweep_table::{Column, Table};
 use indexmap::{IndexMap, IndexSet};
 
@@ -25,7 +25,7 @@ pub struct SweepView {
     /// Positions of the nodes of the columns, if they are the same in the whole sweep.
     pub places: Vec<Place>,
     /// Units of axes and values.
-    pub units: UnitSystem,
+    pub units: UnitChoice,
 }
 
 /// The table of a sweep: the first of the `fields` over the sweep's parameters. Over one parameter lines, one a field;
@@ -53,7 +53,7 @@ pub fn sweep(
     let Slice { rows, axes, notes, .. } = Slice::of(table, parameters, view)?;
     let x = axes.first().copied().unwrap_or(ORDINAL.name);
     let pick = |values: Vec<f64>| -> Vec<f64> { rows.iter().map(|row| values[*row]).collect() };
-    let xs = pick(axis(table, x, view.units)?);
+    let xs = pick(axis(table, x, &view.units)?);
     let texts = match table.columns.get(first) {
         Some(Column::Text(texts)) => Some(texts),
         _ => None,
@@ -64,13 +64,13 @@ pub fn sweep(
     let unsettled = (count > 0).then(|| format!("crosses: {count} of {} points NOT SETTLED", rows.len()));
     if axes.len() < 2 && texts.is_none() {
         let names: Vec<&str> = fields.iter().map(String::as_str).collect();
-        let shown = Shown::of(table, &names, view.units)?;
-        let y_label = shown.label(&view.places);
+        let shown = Shown::of(table, &names, &view.units)?;
+        let y_label = shown.label(&view.places, &view.units);
         let line = |(name, values): (&str, Vec<f64>)| {
             let mut points: Vec<[f64; 2]> =
                 xs.iter().zip(pick(values)).map(|(x, value)| [*x, value]).collect();
             points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            Line { name: at_place(name, &view.places), points, is_marked: true }
+            Line { name: at_place(name, &view.places, &view.units), points, is_marked: true }
         };
         let lines: Vec<Line> = shown.columns.into_iter().map(line).collect();
         let doubtful: Vec<f64> =
@@ -79,7 +79,7 @@ pub fn sweep(
         let plot = LinePlot {
             title: title.to_owned(),
             subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
-            x_label: with_unit(x, view.units),
+            x_label: with_unit(x, &view.units),
             y_label,
             crosses: lines.iter().flat_map(|line| &line.points).filter(is_at).copied().collect(),
             lines,
@@ -88,18 +88,18 @@ pub fn sweep(
         return Ok(plot.drawing());
     }
     let ys = match axes.get(1) {
-        Some(y) => pick(axis(table, y, view.units)?),
+        Some(y) => pick(axis(table, y, &view.units)?),
         None => vec![0.0; rows.len()],
     };
     let (kinds, values, value_label) = match texts {
         Some(texts) => {
             let texts: Vec<Option<&str>> = rows.iter().map(|row| texts[*row].as_deref()).collect();
             let (kinds, values) = if first == CLASS.name { classes(&texts) } else { kinds(&texts) };
-            (kinds, values, at_place(first, &view.places))
+            (kinds, values, at_place(first, &view.places, &view.units))
         }
         None => {
-            let mut shown = Shown::of(table, &[first.as_str()], view.units)?;
-            let value_label = shown.label(&view.places);
+            let mut shown = Shown::of(table, &[first.as_str()], &view.units)?;
+            let value_label = shown.label(&view.places, &view.units);
             let (_, values) = shown.columns.swap_remove(0);
             (Vec::new(), pick(values), value_label)
         }
@@ -117,8 +117,8 @@ pub fn sweep(
     let plot = SweepMap {
         title: title.to_owned(),
         subtitle: notes.into_iter().chain(verified).chain(unsettled).collect::<Vec<_>>().join("; "),
-        x_label: with_unit(x, view.units),
-        y_label: axes.get(1).map(|y| with_unit(y, view.units)).unwrap_or_default(),
+        x_label: with_unit(x, &view.units),
+        y_label: axes.get(1).map(|y| with_unit(y, &view.units)).unwrap_or_default(),
         value_label,
         points: points.collect(),
         words: kinds,
@@ -136,17 +136,17 @@ struct Slice<'t> {
     /// Its position in words.
     notes: Vec<String>,
     /// Units of the words.
-    units: UnitSystem,
+    units: &'t UnitChoice,
 }
 
 impl<'t> Slice<'t> {
     fn of(
         table: &Table,
         parameters: &'t IndexSet<String>,
-        SweepView { slice: held, units, .. }: &SweepView,
+        SweepView { slice: held, units, .. }: &'t SweepView,
     ) -> Result<Self, ChartError> {
         let mut slice =
-            Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new(), units: *units };
+            Slice { rows: (0..table.rows()).collect(), axes: Vec::new(), notes: Vec::new(), units };
         for (name, value) in held {
             if !parameters.contains(name) {
                 let parameters = parameters.iter().cloned().collect();

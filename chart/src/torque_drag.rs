@@ -1,6 +1,6 @@
 //! The picture of a broomstick.
 
-use drillsweep_quantity::UnitSystem;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::*;
 use drillsweep_table::{Column, Table};
 
@@ -16,11 +16,11 @@ pub fn broomstick(
     table: &Table,
     column: &str,
     title: &str,
-    system: UnitSystem,
+    choice: &UnitChoice,
 ) -> Result<Drawing, ChartError> {
-    let values = axis(table, column, system)?;
-    let depths = axis(table, BIT_DEPTH.name, system)?;
-    let friction = axis(table, FRICTION_FACTOR.name, system)?;
+    let values = axis(table, column, choice)?;
+    let depths = axis(table, BIT_DEPTH.name, choice)?;
+    let friction = axis(table, FRICTION_FACTOR.name, choice)?;
     let Some(Column::Text(modes)) = table.columns.get(DRAG_MODE.name) else {
         return Err(ChartError::no_such_column(table, DRAG_MODE.name));
     };
@@ -36,8 +36,8 @@ pub fn broomstick(
     }
     let plot = LinePlot {
         title: title.to_owned(),
-        x_label: with_unit(column, system),
-        y_label: with_unit(BIT_DEPTH.name, system),
+        x_label: with_unit(column, choice),
+        y_label: with_unit(BIT_DEPTH.name, choice),
         lines,
         vertical: VerticalAxis::Depth,
         ..LinePlot::default()
@@ -59,13 +59,14 @@ mod tests {
             .with(&BIT_DEPTH, column(&[1000.0, 2000.0, 1000.0, 1000.0]))
             .with(&HOOK_LOAD, column(&[4e5, 8e5, 5e5, 3e5]))
             .with(&SURFACE_TORQUE, column(&[0.0, 0.0, 0.0, 5e3]));
-        let svg = broomstick(&table, HOOK_LOAD.name, "Broomstick", UnitSystem::Si).unwrap().svg();
+        let svg = broomstick(&table, HOOK_LOAD.name, "Broomstick", &UnitChoice::default()).unwrap().svg();
         for text in ["pick up, 0.2", "pick up, 0.3", ">rotate<", "hook load [kN]", "bit depth [m]"] {
             assert!(svg.contains(text), "{text}");
         }
-        let torque = broomstick(&table, SURFACE_TORQUE.name, "", UnitSystem::Field).unwrap().svg();
-        assert!(torque.contains("surface torque"));
-        assert!(broomstick(&table, "no_such", "", UnitSystem::Si).is_err());
-        assert!(broomstick(&Table::default(), HOOK_LOAD.name, "", UnitSystem::Si).is_err());
+        let torque =
+            broomstick(&table, SURFACE_TORQUE.name, "", &UnitChoice::parse("field").unwrap()).unwrap().svg();
+        assert!(torque.contains("surface torque [ft lbf]") && torque.contains("bit depth [ft]"));
+        assert!(broomstick(&table, "no_such", "", &UnitChoice::default()).is_err());
+        assert!(broomstick(&Table::default(), HOOK_LOAD.name, "", &UnitChoice::default()).is_err());
     }
 }

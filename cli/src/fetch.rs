@@ -6,7 +6,7 @@ use anyhow::{Context, bail, ensure};
 use clap::{Args, ValueEnum};
 use drillsweep_api::{ArtifactEntry, ArtifactList, PointDetail, Sweep};
 use drillsweep_quantity::columns::ORBIT_MEAN_RADIUS;
-use drillsweep_quantity::{Name, Place, Variant};
+use drillsweep_quantity::{ChoiceError, Name, Place, UnitChoice, UnitSystem, Variant};
 use drillsweep_table::tables::{self, Layout};
 use indicatif::ProgressBar;
 use serde::Serialize;
@@ -40,6 +40,14 @@ pub(crate) struct FetchArguments {
     /// Format of the files.
     #[arg(long, value_enum, default_value = "parquet")]
     format: Format,
+    /// Units of the columns: `si`, `field`, and `COLUMN:UNIT` for single columns, separated by commas. Names of files then end in `-si`, `-field` or
+    /// `-units`; CSV has units in its first line.
+    #[arg(long, value_parser = Units::parse)]
+    units: Option<Units>,
+    /// Signs of weight on bit and torque on bit in the sweep's table: `driller` has compression, and torque that opposes clockwise rotation, as
+    /// positive.
+    #[arg(long, default_value = "model", value_parser = ["model", "driller"])]
+    signs: String,
     /// Download the sweep's table only.
     #[arg(long)]
     table_only: bool,
@@ -68,6 +76,50 @@ impl Format {
     }
 }
 
+/// Units of the columns, as they were written.
+#[derive(Clone)]
+pub(crate) struct Units {
+    text: String,
+    pub(crate) choice: UnitChoice,
+}
+
+impl Units {
+    pub(crate) fn parse(text: &str) -> Result<Self, ChoiceError> {
+        Ok(Self { text: text.to_owned(), choice: UnitChoice::parse(text)? })
+    }
+}
+
+/// Format and units of the files.
+struct Form<'a> {
+    format: &'static str,
+    units: Option<&'a Units>,
+}
+
+impl Form<'_> {
+    /// Query that requests it.
+    fn query(&self) -> String {
+        match self.units {
+            Some(units) => format!("format={}&units={}", self.format, path_segment(&units.text)),
+            None => format!("format={}", self.format),
+        }
+    }
+
+    /// End of the names of its files.
+    fn ending(&self) -> String {
+        match self.units.and_then(|units| units.choice.suffix()) {
+            Some(suffix) => format!("-{suffix}.{}", self.format),
+            None => format!(".{}", self.format),
+        }
+    }
+
+    /// True if another choice of units may have files of the same names.
+    fn is_ambiguous(&self) -> bool {
+        self.units.is_some_and(|units| {
+            ![UnitSystem::Si, UnitSystem::Field].map(UnitChoice::from).contains(&units.choice)
+        })
+    }
+}
+
 /// Writes `sweep.json` as the server describes the sweep, `table` with a row a point, and a folder a point with its tables and full
 /// spectra. A file that the server cannot give does not stop the others: `missing.json` lists missing files with the reasons, and the
 /// command fails. Files of points that have not changed since the last fetch are kept, so an interrupted fetch resumes.
@@ -75,17 +127,18 @@ pub(crate) fn fetch(arguments: &FetchArguments) -> anyhow::Result<()> {
     let client = Client::new(&arguments.server)?;
     let id = &path_segment(&client.sweep_id(&arguments.sweep)?);
     let sweep: Sweep = client.get(&format!("/v1/sweeps/{id}"))?;
-    let format = arguments.format.name();
+    let form = &Form { format: arguments.format.name(), units: arguments.units.as_ref() };
     std::fs::create_dir_all(&arguments.output)
         .with_context(|| format!("cannot make {}", arguments.output.display()))?;
     let mut files = Files::default();
     let own = arguments.output.join(SWEEP_FILE);
     refuse_another_sweeps(&own, &sweep)?;
     files.write(own, serde_json::to_string_pretty(&sweep)?.as_bytes())?;
-    let table = client.bytes(&format!("/v1/sweeps/{id}/table?format={format}"))?;
-    files.write(arguments.output.join(format!("table.{format}")), &table)?;
+    let signs = if arguments.signs == "driller" { "&signs=driller" } else { "" };
+    let table = client.bytes(&format!("/v1/sweeps/{id}/table?{}{signs}", form.query()))?;
+    files.write(arguments.output.join(format!("table{}", form.ending())), &table)?;
     if !arguments.table_only {
-        points(&client, &sweep, &arguments.output, format, &mut files)?;
+        points(&client, &sweep, &arguments.output, form, &mut files)?;
     }
     let manifest = arguments.output.join("missing.json");
     if files.missing.is_empty() {
@@ -139,7 +192,7 @@ fn points(
     client: &Client,
     sweep: &Sweep,
     output: &Path,
-    format: &str,
+    form: &Form<'_>,
     files: &mut Files,
 ) -> anyhow::Result<()> {
     let id = path_segment(&sweep.id);
@@ -152,18 +205,20 @@ fn points(
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
         // Written last, it shows that the files next to it are of this result.
         let (mark, described) = (folder.join("point.json"), serde_json::to_string_pretty(&point)?);
-        files.is_unchanged = std::fs::read(&mark).is_ok_and(|known| known == described.as_bytes());
+        files.is_unchanged =
+            !form.is_ambiguous() && std::fs::read(&mark).is_ok_and(|known| known == described.as_bytes());
         let has = |name: &str| point.tables.iter().any(|table| table == name);
         // Parquet is served as it is stored, and a long history in stretches.
-        let stored: Vec<ArtifactEntry> = match format == Format::Parquet.name() && !point.tables.is_empty() {
-            true => client.get::<ArtifactList>(&format!("{path}/artifacts"))?.artifacts,
-            false => Vec::new(),
-        };
+        let stored: Vec<ArtifactEntry> =
+            match form.format == Format::Parquet.name() && form.units.is_none() && !point.tables.is_empty() {
+                true => client.get::<ArtifactList>(&format!("{path}/artifacts"))?.artifacts,
+                false => Vec::new(),
+            };
         for table in TABLES.iter().map(|table| table.name).filter(|table| has(table)) {
-            let file = folder.join(format!("{table}.{format}"));
+            let file = folder.join(format!("{table}{}", form.ending()));
             match stored.iter().find(|entry| entry.name == table && entry.expired.is_none()) {
                 Some(entry) => files.download_stored(client, entry, file)?,
-                None => files.download(client, &format!("{path}/{table}?format={format}"), file)?,
+                None => files.download(client, &format!("{path}/{table}?{}", form.query()), file)?,
             }
         }
         if has("cost") {
@@ -181,21 +236,17 @@ fn points(
                         (format!("node={node}"), format!("node{node}"))
                     }
                 };
-                let node_and_format = format!("{query}&window=hann&format={format}");
+                let node_and_form = format!("{query}&window=hann&{}", form.query());
                 let Some(windows) = point.scenario.spectrum_windows() else {
                     // Runs that settle keep only their window.
-                    let name = format!("spectrum-{place}.{format}");
-                    files.download(
-                        client,
-                        &format!("{path}/spectrum?{node_and_format}"),
-                        folder.join(name),
-                    )?;
+                    let name = format!("spectrum-{place}{}", form.ending());
+                    files.download(client, &format!("{path}/spectrum?{node_and_form}"), folder.join(name))?;
                     continue;
                 };
                 for window in windows {
                     let (from, to) = (json!(window.from), json!(window.to));
-                    let query = format!("{node_and_format}&from={from}&to={to}");
-                    let name = format!("spectrum-{place}-{from}-{to}s.{format}");
+                    let query = format!("{node_and_form}&from={from}&to={to}");
+                    let name = format!("spectrum-{place}-{from}-{to}s{}", form.ending());
                     files.download(client, &format!("{path}/spectrum?{query}"), folder.join(name))?;
                 }
             }

@@ -8,7 +8,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use drillsweep_api::{
     AppendRequest, Axis, AxisName, Design, FieldProblem, ListedPoints, PlannedPoint, PlannedVerification,
-    Refinement, RefinementState, Scale, Sweep, SweepRequest,
+    Refinement, RefinementState, Scale, Signs, Sweep, SweepRequest,
 };
 use drillsweep_quantity::{entry, unit};
 use drillsweep_scenario::ScenarioRequest;
@@ -84,6 +84,10 @@ pub(crate) struct DesignArguments {
     /// `contact.stiffness=1e5:1e7:5:log`; with the designs `latin_hypercube` and `sobol`, `from:to` or `from:to:log`.
     #[arg(long, value_name = "PATH=VALUES", value_parser = parse_named_axis)]
     axis: Vec<(String, Axis)>,
+    /// Signs of weight on bit and torque on bit in this request: `driller` takes compression, and torque that opposes clockwise rotation, as
+    /// positive.
+    #[arg(long, default_value = "model", value_parser = PossibleValuesParser::new(["model", "driller"]).try_map(signs))]
+    signs: Signs,
     /// Design that makes points from the axes.
     #[arg(
         long,
@@ -157,6 +161,7 @@ impl DesignArguments {
             samples: self.samples,
             seed: self.seed,
             skip: self.skip,
+            signs: self.signs,
             refine: None,
         }
     }
@@ -218,7 +223,8 @@ pub(crate) fn refine(arguments: &RefineArguments) -> anyhow::Result<()> {
 
 impl SubmitArguments {
     fn request(&self) -> anyhow::Result<SweepRequest> {
-        let AppendRequest { design, axes, points, samples, seed, skip, refine: _ } = self.design.request();
+        let AppendRequest { design, axes, points, samples, seed, skip, signs, refine: _ } =
+            self.design.request();
         let ScenarioRequest { preset, scenario, set } = self.scenario.request(self.accuracy.as_deref())?;
         let outputs = self.outputs.clone().map(serde_json::from_value).transpose();
         Ok(SweepRequest {
@@ -236,6 +242,7 @@ impl SubmitArguments {
             seed,
             skip,
             verify: self.verify,
+            signs,
             priority: self.priority.unwrap_or_default(),
         })
     }
@@ -368,6 +375,10 @@ fn warn(sweep: &Sweep) {
 }
 
 fn design(name: String) -> Result<Design, serde_json::Error> {
+    serde_json::from_value(Value::String(name))
+}
+
+fn signs(name: String) -> Result<Signs, serde_json::Error> {
     serde_json::from_value(Value::String(name))
 }
 

@@ -8,7 +8,7 @@ use drillsweep_api::{
     AxisName, FailureList, PointCounts, PointDetail, PointRow, Queue, Sweep, SweepDeletion, SweepList,
     SweepPatch, SweepVerification, Worker, WorkerList,
 };
-use drillsweep_quantity::unit;
+use drillsweep_quantity::{UnitChoice, unit};
 use jiff::{SignedDuration, Timestamp};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -68,6 +68,9 @@ pub(crate) struct ShowArguments {
     sweep: String,
     /// One of its points, from 1.
     point: Option<u32>,
+    /// Units of the texts: `si`, `field`, and `COLUMN:UNIT` for single columns, separated by commas; JSON keeps its units.
+    #[arg(long, value_parser = UnitChoice::parse)]
+    units: Option<UnitChoice>,
     /// Print JSON.
     #[arg(long)]
     json: bool,
@@ -178,7 +181,7 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
         if arguments.json {
             return print_json(&point);
         }
-        print(&point_text(&point));
+        print(&point_text(&point, arguments.units.as_ref()));
         return Ok(());
     }
     let sweep: Sweep = client.get(&path)?;
@@ -191,14 +194,19 @@ pub(crate) fn show(arguments: &ShowArguments) -> anyhow::Result<()> {
     print(&sweep_line(&sweep));
     warn_of_bias(&sweep);
     warn_of_doubts(&client, &sweep);
-    print(&points_text(&points));
+    print(&points_text(&points, arguments.units.as_ref()));
     Ok(())
 }
 
-fn points_text(points: &[PointRow]) -> String {
+fn points_text(points: &[PointRow], units: Option<&UnitChoice>) -> String {
     let names: Vec<&String> = points.first().into_iter().flat_map(|point| point.parameters.keys()).collect();
     let mut header = vec!["point", "state", "progress", "attempts"];
-    header.extend(names.iter().map(|name| name.as_str()));
+    let named = |name: &&String| match units.and_then(|units| units.shown(name)) {
+        Some(unit) => format!("{name} [{}]", unit.symbol),
+        None => (*name).clone(),
+    };
+    let titles: Vec<String> = names.iter().map(named).collect();
+    header.extend(titles.iter().map(String::as_str));
     header.push("error");
     let rows: Vec<Vec<String>> = points
         .iter()
@@ -209,7 +217,11 @@ fn points_text(points: &[PointRow]) -> String {
                 format!("{:.0} %", 100.0 * point.progress),
                 point.attempts.to_string(),
             ];
-            row.extend(names.iter().map(|name| cell(&json!(point.parameters.get(*name)))));
+            let value = |name: &&String| {
+                let value = point.parameters.get(*name).copied();
+                cell(&json!(value.map(|value| in_units(name, value, units))))
+            };
+            row.extend(names.iter().map(value));
             row.push(point.error.as_ref().map_or_else(String::new, |error| error.reason.clone()));
             row
         })
@@ -483,7 +495,7 @@ fn doubts(columns: &Value) -> Vec<String> {
     .collect()
 }
 
-fn point_text(point: &PointDetail) -> String {
+fn point_text(point: &PointDetail, units: Option<&UnitChoice>) -> String {
     let mut text = format!("point {} {}\n", point.row.ordinal, point.row.state);
     if let Some(error) = json!(point.row.error).as_object() {
         for (name, value) in error {
@@ -493,7 +505,12 @@ fn point_text(point: &PointDetail) -> String {
     let parameters = point.row.parameters.iter().map(|(name, value)| (name, json!(value)));
     let summary = point.summary.iter().flatten().map(|(name, value)| (name, value.clone()));
     let row = |(name, value): (&String, Value)| {
-        let unit = unit(name).filter(|unit| *unit != "1").unwrap_or_default();
+        let unit = units.map_or_else(|| unit(name), |units| units.unit(name).map(|unit| unit.symbol));
+        let unit = unit.filter(|unit| *unit != "1").unwrap_or_default();
+        let value = match value.as_f64() {
+            Some(number) if units.is_some() && !unit.is_empty() => json!(in_units(name, number, units)),
+            _ => value,
+        };
         vec![name.clone(), cell(&value), unit.to_owned()]
     };
     let rows: Vec<Vec<String>> = parameters.chain(summary).map(row).collect();
@@ -505,6 +522,11 @@ fn point_text(point: &PointDetail) -> String {
         let _ = write!(text, "\n{}", columns(&["provenance", ""], &provenance, numbers_in(&[])));
     }
     text
+}
+
+/// A value of a column in the chosen units.
+fn in_units(name: &str, value: f64, units: Option<&UnitChoice>) -> f64 {
+    units.and_then(|units| units.unit(name)).map_or(value, |unit| unit.written(value))
 }
 
 fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
@@ -628,7 +650,7 @@ mod tests {
     fn points_are_listed_in_columns() {
         let running = point(1, "running", &json!({"progress": 0.426}));
         let points = [running, point(2, "failed", &failure()), point(11, "succeeded", &json!({}))];
-        insta::assert_snapshot!(points_text(&points.map(read)));
+        insta::assert_snapshot!(points_text(&points.map(read), None));
     }
 
     #[test]
@@ -636,8 +658,8 @@ mod tests {
         let summary = json!({"contact_count": 31, "tension_top": 123456.789, "motion_regime": "regular", "settled_at": null});
         let provenance = json!({"version": "0.1.0", "transient_cpu_time": 12.3456789});
         let more = json!({"summary": summary, "provenance": provenance});
-        let succeeded = point_text(&read(point(1, "succeeded", &more)));
-        let failed = point_text(&read(point(2, "failed", &failure())));
+        let succeeded = point_text(&read(point(1, "succeeded", &more)), None);
+        let failed = point_text(&read(point(2, "failed", &failure())), None);
         insta::assert_snapshot!(format!("{succeeded}\n\n{failed}"));
     }
 

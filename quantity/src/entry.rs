@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use bigdecimal::{BigDecimal, Zero};
 use thiserror::Error;
 
-use crate::units::Units;
+use crate::units::{Unit, Units};
 
 /// Longest text of an entry \[bytes\].
 const LONGEST: usize = 60;
@@ -25,14 +25,29 @@ pub fn read(text: &str, units: &Units) -> Result<f64, EntryError> {
     if symbol.is_empty() {
         return Err(malformed());
     }
-    let unknown = || {
-        let dimension = FAMILIES.iter().find_map(|family| family.find(symbol).map(|_| family.dimension));
-        EntryError::Unit { symbol: symbol.to_owned(), dimension, fits: fitting(units) }
-    };
-    let unit = Family::of(units).and_then(|family| family.find(symbol)).ok_or_else(unknown)?;
-    let factor = FACTORS.get(&(unit.symbols[0], units.kept)).ok_or_else(unknown)?;
+    let (_, factor) = find(symbol, units)?;
     let value: f64 = (number * factor).to_scientific_notation().parse().map_err(|_| malformed())?;
     if value.is_finite() { Ok(value) } else { Err(EntryError::Size) }
+}
+
+/// The unit of a symbol in which a quantity may be written, with its exact size as the nearest double.
+///
+/// # Errors
+/// The symbol is unknown, or of a unit of another dimension.
+pub fn unit_of(symbol: &str, units: &Units) -> Result<Unit, UnitError> {
+    let (entry, factor) = find(symbol.trim(), units)?;
+    let usual = entry.symbols[0];
+    // The vocabulary may write the symbol with blanks.
+    let own = [units.kept, units.shown.symbol, units.field.symbol];
+    let symbol = own.into_iter().find(|own| plain(own) == plain(usual)).unwrap_or(usual);
+    let size = factor.to_scientific_notation().parse().map_err(|_| UnitError::unknown(symbol, units))?;
+    Ok(Unit { symbol, size })
+}
+
+fn find(symbol: &str, units: &Units) -> Result<(&'static Entry, &'static BigDecimal), UnitError> {
+    let unit = Family::of(units).and_then(|family| family.find(symbol));
+    let found = unit.and_then(|unit| Some((unit, FACTORS.get(&(unit.symbols[0], units.kept))?)));
+    found.ok_or_else(|| UnitError::unknown(symbol, units))
 }
 
 /// Sizes of all units in the others of their family, by both symbols, to a hundred digits. A division takes tens of microseconds, and a
@@ -54,18 +69,31 @@ pub enum EntryError {
         fits: String,
     },
     /// It is beyond the largest double.
-    #[error("a finite number")]
+    #[error("a finite number in its unit")]
     Size,
     /// Its unit is unknown, or of another dimension.
-    #[error("a number with one of the units {fits}{}", of_other(symbol, *dimension))]
-    Unit {
-        /// The unit as it was written.
-        symbol: String,
-        /// The dimension that has this unit.
-        dimension: Option<&'static str>,
-        /// Units of the quantity.
-        fits: String,
-    },
+    #[error("a number with one of the units {0}")]
+    Unit(#[from] UnitError),
+}
+
+/// Reason why a unit is none of a quantity: the valid units, as in "must be one of ...".
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{fits}{}", of_other(symbol, *dimension))]
+pub struct UnitError {
+    /// The unit as it was written.
+    pub symbol: String,
+    /// The dimension that has this unit; absent if the unit is unknown.
+    pub dimension: Option<&'static str>,
+    /// Units of the quantity.
+    pub fits: String,
+}
+
+impl UnitError {
+    fn unknown(symbol: &str, units: &Units) -> Self {
+        let dimension = FAMILIES.iter().find_map(|family| family.find(symbol).map(|_| family.dimension));
+        let symbol = symbol.chars().take(LONGEST).collect();
+        Self { symbol, dimension, fits: fitting(units) }
+    }
 }
 
 fn of_other(symbol: &str, dimension: Option<&str>) -> String {
@@ -73,6 +101,11 @@ fn of_other(symbol: &str, dimension: Option<&str>) -> String {
         || format!("; `{symbol}` is unknown"),
         |dimension| format!("; `{symbol}` is a unit of {dimension}"),
     )
+}
+
+/// True if a text about a valid value is that of an [`EntryError`], which reports it through errors of other formats.
+pub fn is_refusal(message: &str) -> bool {
+    message.contains("a number with one of the units ") || message.ends_with("a finite number in its unit")
 }
 
 /// Symbols of the units in which a quantity may be written, the one in which it is kept first.
@@ -255,6 +288,10 @@ static FAMILIES: &[Family] = &[
         ],
     },
     Family {
+        dimension: "acceleration",
+        units: &[unit(&["m/s2"], "1"), unit(&["g"], "9.80665"), unit(&["ft/s2"], "0.3048")],
+    },
+    Family {
         dimension: "angle",
         units: &[unit(&["deg"], "1"), quotient(&["rad"], "180", "3.141592653589793238462643383279502884197")],
     },
@@ -320,6 +357,28 @@ static FAMILIES: &[Family] = &[
             unit(&["kft lbf", "klbf ft", "kft lb", "kft-lbf", "kft-lb"], "1355.8179483314004"),
             unit(&["in lbf", "lbf in"], "0.1129848290276167"),
         ],
+    },
+    Family {
+        dimension: "energy",
+        units: &[
+            unit(&["J"], "1"),
+            unit(&["kJ"], "1000"),
+            unit(&["MJ"], "1000000"),
+            unit(&["ft lbf", "ft lb", "ft-lbf", "ft-lb"], "1.3558179483314004"),
+        ],
+    },
+    Family {
+        dimension: "power",
+        units: &[
+            unit(&["W"], "1"),
+            unit(&["kW"], "1000"),
+            unit(&["hp"], "745.69987158227022"),
+            quotient(&["ft lbf/min", "ft-lbf/min"], "1.3558179483314004", "60"),
+        ],
+    },
+    Family {
+        dimension: "kinematic viscosity",
+        units: &[unit(&["m2/s"], "1"), unit(&["mm2/s"], "0.000001"), unit(&["cSt"], "0.000001")],
     },
     Family {
         dimension: "pressure",
@@ -392,10 +451,10 @@ static FAMILIES: &[Family] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters;
+    use crate::all::all;
     use crate::units::{
-        ANGLE_IN_DEGREES, FLOW_RATE, FORCE, MUD_DENSITY, RATIO, SPEED_OF_ROTATION, TORQUE, WIDTH,
-        YIELD_STRESS,
+        ACCELERATION, ANGLE_IN_DEGREES, DEPTH, FLOW_RATE, FORCE, MUD_DENSITY, RATIO, SPEED_OF_ROTATION,
+        TORQUE, UnitSystem, WIDTH, YIELD_STRESS,
     };
 
     #[test]
@@ -418,6 +477,7 @@ mod tests {
             ("10000 ft·lbf", &TORQUE, 13_558.179_483_314_004),
             ("20 kft-lb", &TORQUE, 27_116.358_966_628_01),
             ("0.25 rev/s", &SPEED_OF_ROTATION, 15.0),
+            ("3 g", &ACCELERATION, 29.419_95),
             ("30°", &ANGLE_IN_DEGREES, 30.0),
             ("5 %", &RATIO, 0.05),
         ] {
@@ -436,8 +496,8 @@ mod tests {
     }
 
     #[test]
-    fn units_of_all_fields_are_read_by_the_sizes_of_the_vocabulary() {
-        for quantity in parameters::ALL {
+    fn units_of_all_quantities_are_read_by_the_sizes_of_the_vocabulary() {
+        for quantity in all() {
             let Some(units) = quantity.units else { continue };
             assert_eq!(read(&format!("0.1 {}", units.kept), units), Ok(0.1), "{}", quantity.name);
             for unit in [units.shown, units.field] {
@@ -448,6 +508,49 @@ mod tests {
                 assert!((read / value - 1.0).abs() < 3.0 * f64::EPSILON, "{text}: {read} is not {value}");
             }
         }
+    }
+
+    #[test]
+    fn a_number_of_any_unit_is_written_as_it_was_read() {
+        let texts = ["10.5", "0.1", "-22", "12.25", "1e-6", "634.012345678901", "9.99999999999999e5", "0"];
+        for quantity in all() {
+            let Some(units) = quantity.units else { continue };
+            for symbol in symbols(units) {
+                let unit = unit_of(symbol, units).unwrap();
+                for text in texts {
+                    let number: f64 = text.parse().unwrap();
+                    let kept = read(&format!("{text} {symbol}"), units).unwrap();
+                    assert_eq!(unit.written(kept), number, "{}: {text} {symbol}", quantity.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_written_number_is_the_kept_one_to_rounding() {
+        // Fractions of pi, which have no short digits in any unit.
+        for (units, system) in
+            [(&DEPTH, UnitSystem::Field), (&FORCE, UnitSystem::Si), (&TORQUE, UnitSystem::Field)]
+        {
+            let unit = unit_of(units.of(system).symbol, units).unwrap();
+            for number in (1..1000).map(|number| f64::from(number) * std::f64::consts::PI * 1e-3) {
+                let back = unit.written(number) * unit.size;
+                assert!((back / number - 1.0).abs() < 4.0 * f64::EPSILON, "{number}");
+            }
+        }
+        let feet = unit_of("ft", &DEPTH).unwrap();
+        assert!(feet.written(f64::NAN).is_nan() && feet.written(f64::INFINITY).is_infinite());
+        assert_eq!(feet.written(0.3048e-300), 1e-300);
+    }
+
+    #[test]
+    fn units_of_a_quantity_are_found_by_any_of_their_symbols() {
+        let symbol = |symbol: &str, units: &Units| unit_of(symbol, units).map(|unit| unit.symbol);
+        assert_eq!(symbol("lb/gal", &MUD_DENSITY), Ok("ppg"));
+        assert_eq!(symbol("lbf/100ft2", &YIELD_STRESS), Ok("lbf/100 ft2"));
+        assert_eq!(unit_of("m", &WIDTH), Ok(Unit { symbol: "m", size: 1.0 }));
+        let refused = symbol("gpm", &MUD_DENSITY).unwrap_err().to_string();
+        assert_eq!(refused, "kg/m3, g/cm3, ppg, lb/ft3; `gpm` is a unit of volume flow rate");
     }
 
     #[test]
@@ -490,8 +593,9 @@ mod tests {
             &long,
         ] {
             let message = refused(text);
-            assert!(message.contains(fits), "{text}: {message}");
+            assert!(message.contains(fits) && is_refusal(&message), "{text}: {message}");
         }
         assert_eq!(read("1e999 ppg", &MUD_DENSITY), Err(EntryError::Size));
+        assert!(is_refusal(&EntryError::Size.to_string()) && !is_refusal("a number"));
     }
 }

@@ -5,6 +5,7 @@
 //! (`spread_`, `ensemble_mean_`, `reference_`, `bias_`).
 
 mod all;
+mod choice;
 mod classes;
 pub mod columns;
 mod definition;
@@ -15,6 +16,7 @@ mod parameters;
 pub mod units;
 
 pub use all::all;
+pub use choice::{ChoiceError, UnitChoice};
 pub use classes::{CLASSES, Class};
 pub use definition::Quantity;
 pub use export::{QuantityEntry, UnitEntry, WordEntry, entries, json};

@@ -28,8 +28,22 @@ impl Unit {
         value / self.size
     }
 
+    /// A value in this unit as a table has it: the number that was read in it, if it was one of up to fifteen digits; the quotient
+    /// otherwise. Both are the value to the rounding of doubles.
+    pub fn written(&self, value: f64) -> f64 {
+        /// Most that a product deviates by from a number that was rounded once, in parts of it.
+        const ROUNDING: f64 = 2.0 * f64::EPSILON;
+        if self.size == 1.0 {
+            return value;
+        }
+        let quotient = self.of(value);
+        // The quotient is off by 1.5 units in the last place of a double at most, less than half of the fifteenth digit.
+        let short = fifteen_digits(quotient);
+        if (short * self.size - value).abs() <= ROUNDING * value.abs() { short } else { quotient }
+    }
+
     /// Its symbol as texts have it, such as `N·s/m²`; empty of ratios.
-    pub fn written(&self) -> String {
+    pub fn text(&self) -> String {
         match self.symbol {
             "1" => return String::new(),
             "deg" => return "°".to_owned(),
@@ -47,6 +61,34 @@ impl Unit {
         }
         text
     }
+}
+
+/// The double nearest to the first fifteen digits of a number.
+fn fifteen_digits(number: f64) -> f64 {
+    /// Bounds of a number of fifteen digits.
+    const DIGITS: std::ops::Range<f64> = 1e14..1e15;
+    let magnitude = number.abs();
+    if !magnitude.is_normal() {
+        return number;
+    }
+    let mut power = 14 - magnitude.log10().floor() as i32;
+    // Beyond, powers of ten are not exact.
+    if power.abs() > 21 {
+        return format!("{number:.14e}").parse().unwrap_or(number);
+    }
+    let scaled = |power: i32| {
+        let scale = 10_f64.powi(power.abs());
+        if power < 0 { magnitude / scale } else { magnitude * scale }
+    };
+    // The logarithm is rounded.
+    match scaled(power) {
+        below if below < DIGITS.start => power += 1,
+        above if above >= DIGITS.end => power -= 1,
+        _ => {}
+    }
+    let digits = scaled(power).round_ties_even();
+    let scale = 10_f64.powi(power.abs());
+    (if power < 0 { digits * scale } else { digits / scale }).copysign(number)
 }
 
 /// The units of one kind of quantity.
@@ -220,7 +262,7 @@ mod tests {
 
     #[test]
     fn symbols_are_written_with_powers_and_products() {
-        let written = |units: &Units, system| units.of(system).written();
+        let written = |units: &Units, system| units.of(system).text();
         assert_eq!(written(&DAMPING_PER_LENGTH, UnitSystem::Si), "N·s/m²");
         assert_eq!(written(&FLOW_RATE, UnitSystem::Si), "m³/s");
         assert_eq!(written(&YIELD_STRESS, UnitSystem::Field), "lbf/100·ft²");

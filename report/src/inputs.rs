@@ -155,7 +155,7 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
     let shown = sections.len().min(MOST_SECTIONS);
     // The lower end is what matters: of many sections the upper ones are summarised.
     let (above, listed) = sections.split_at(sections.len() - shown);
-    let symbol = |name: &str| unit(name, system).map_or(String::new(), |unit| unit.written());
+    let symbol = |name: &str| unit(name, system).map_or(String::new(), |unit| unit.text());
     let (along, across) = (symbol(MEASURED_DEPTH.name), symbol(OUTER_DIAMETER.name));
     let bare = |units: &units::Units, value: f64| crate::reading::number(units.of(system).of(value));
     let mut bottom = length(above);

@@ -5,7 +5,7 @@ use drillsweep_api::view::worst::WorstValues;
 use drillsweep_api::{PointDetail, Sweep};
 use drillsweep_chart::{self as chart, Drawing, Hole};
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Quantity, UnitSystem};
+use drillsweep_quantity::{Quantity, UnitChoice, UnitSystem};
 use drillsweep_table::Table;
 use indexmap::IndexMap;
 use maud::{Markup, PreEscaped, html};
@@ -92,6 +92,7 @@ pub(crate) fn accuracy_of(data: &PointData, units: UnitSystem) -> Markup {
 
 /// Orbit, bit speed and profiles, as far as the result has them.
 pub(crate) fn pictures(data: &PointData, units: UnitSystem) -> Markup {
+    let units = &UnitChoice::from(units);
     let orbit =
         data.orbit.as_ref().and_then(|(table, hole)| chart::orbit(table, hole, "Orbit", None, units).ok());
     let rotation = data

@@ -32,7 +32,7 @@ pub(crate) fn amount(name: &str, value: f64, system: UnitSystem) -> String {
     }
     match unit(name, system) {
         Some(unit) => {
-            let symbol = unit.written();
+            let symbol = unit.text();
             let space = if symbol == "°" { "" } else { "\u{a0}" };
             format!("{}{space}{symbol}", number(unit.of(value)))
         }

@@ -56,7 +56,7 @@ impl WindowData {
         let table = window.finish();
         let varied = Varied::of_table(&table, parameters.iter().map(String::as_str));
         let fields = [CLASS.name.to_owned()];
-        let view = SweepView { units, ..SweepView::default() };
+        let view = SweepView { units: units.into(), ..SweepView::default() };
         let picture = (!varied.is_empty())
             .then(|| chart::sweep(&table, &parameters, Some(&fields), findings, "", &view).ok())
             .flatten();

@@ -44,8 +44,8 @@ impl Path<'_> {
         names.reverse();
         let parts =
             (0..names.len()).flat_map(|start| (start..names.len()).rev().map(move |end| (start, end)));
-        let quantity = parts.map(|(start, end)| names[start..=end].join(".")).find_map(|path| of(&path));
-        quantity?.units
+        // A name on the way may be that of a column without units, as `scenario` is.
+        parts.map(|(start, end)| names[start..=end].join(".")).find_map(|path| of(&path)?.units)
     }
 }
 

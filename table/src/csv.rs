@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use drillsweep_quantity::units::RATIO;
+
 use crate::error::TableError;
 use crate::source::{Sink, Source};
 use crate::table::{Column, Table};
@@ -22,8 +24,30 @@ pub fn write(table: &Table) -> Result<String, TableError> {
 /// # Errors
 /// A piece cannot be read, the columns differ in length, or the sink fails.
 pub fn write_to(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    write_below(source.layout().columns.keys().cloned(), source, sink)
+}
+
+/// The same with units in the first line: `mud_density [ppg]`; ratios have none.
+///
+/// # Errors
+/// As [`write_to`].
+pub fn write_with_units(source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    let Table { columns, units, .. } = source.layout();
+    let head = |name: &String| match units.get(name).filter(|unit| *unit != RATIO.kept) {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.clone(),
+    };
+    write_below(columns.keys().map(head), source, sink)
+}
+
+/// Lines of values below the first line.
+fn write_below(
+    heads: impl Iterator<Item = String>,
+    source: &impl Source,
+    sink: &mut Sink<'_>,
+) -> Result<(), TableError> {
     let mut writer = ::csv::Writer::from_writer(sink);
-    writer.write_record(source.layout().columns.keys()).map_err(failed)?;
+    writer.write_record(heads.collect::<Vec<_>>()).map_err(failed)?;
     for piece in source.by_rows() {
         write_rows(&mut writer, piece?.as_ref()).map_err(failed)?;
     }
@@ -82,6 +106,17 @@ mod tests {
             .with("u", Column::Single(vec![0.5, f32::NAN]))
             .with("error", Column::Text(vec![None, Some("diverged, at once".to_owned())]));
         assert_eq!(write(&table).unwrap(), "node,radius,u,error\n1,1e-7,0.5,\n,,,\"diverged, at once\"\n");
+    }
+
+    #[test]
+    fn units_stand_in_the_first_line_on_request() {
+        let table = Table::default()
+            .with("node", Column::Integer(vec![Some(1)]))
+            .with("measured_depth", Column::Number(vec![1.5]))
+            .with("friction_coefficient", Column::Number(vec![0.5]));
+        let mut bytes = Vec::new();
+        write_with_units(&table, &mut bytes).unwrap();
+        assert_eq!(bytes, b"node,measured_depth [m],friction_coefficient\n1,1.5,0.5\n");
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub struct Table {
     /// The columns, by name.
     #[schema(example = json!({"time": [0.0, 0.001], "u_49": [0.0129, 0.0131]}))]
     pub columns: IndexMap<String, Column>,
-    /// Units of the columns that have one (`1` for ratios), by column name.
+    /// Units of the columns that have one (`1` for ratios), by column name; in units that a request chooses, also of attributes.
     #[schema(example = json!({"time": "s", "u_49": "m"}))]
     pub units: IndexMap<String, String>,
 }

@@ -120,6 +120,18 @@ def test_a_spectrogram_is_the_spectra_of_its_windows(sweep: Sweep) -> None:
         np.testing.assert_allclose(amplitude[index], spectrum["amplitude"], rtol=1e-9, atol=1e-15)
 
 
+def test_tables_have_the_requested_units(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    kept, field = point.orbit(node=49), point.orbit(node=49, units="field,v:mm")
+    assert [field.units[name] for name in ("time", "u", "v", "measured_depth")] == ["s", "in", "mm", "ft"]
+    np.testing.assert_allclose(0.0254 * field["u"], kept["u"], rtol=1e-12)
+    np.testing.assert_allclose(1e-3 * field["v"], kept["v"], rtol=1e-12)
+    table = sweep.table(units="field,mud_density:g/cm3")
+    np.testing.assert_allclose(1e3 * table["mud_density"], sweep.table()["mud_density"], rtol=1e-15)
+    window = sweep.window(limits={"largest_side_force": "5 klbf"}, units="field")
+    assert window.attributes["limits"]["largest_side_force"] == 5.0
+
+
 def test_loads_lines_and_diagnosis_agree_with_the_row(sweep: Sweep) -> None:
     point = sweep.point(2)
     loads, row = point.loads(), point.summary

@@ -138,6 +138,52 @@ pub(crate) mod tests {
         assert_eq!(parameters, wanted.map(|(name, value)| (name.to_owned(), value)));
     }
 
+    fn keys_in_signs(body: Value) -> Vec<super::PointKey> {
+        let expansion = expand(&request(body).in_model_signs()).unwrap_or_else(|problem| panic!("{problem}"));
+        expansion.points.iter().map(|point| point.key).collect()
+    }
+
+    #[test]
+    fn requests_of_both_signs_are_the_same_points() {
+        let mut scenario = serde_json::to_value(drillsweep_scenario::preset("paper-200m").unwrap()).unwrap();
+        let weight = scenario["operation"]["weight_on_bit"].as_f64().unwrap();
+        let torque = scenario["operation"]["torque_on_bit"].as_f64().unwrap();
+        let model = keys_in_signs(json!({"scenario": scenario}));
+        scenario["operation"]["weight_on_bit"] = json!(-weight);
+        scenario["operation"]["torque_on_bit"] = json!(-torque);
+        assert_eq!(keys_in_signs(json!({"scenario": scenario, "signs": "driller"})), model);
+        let weight = "operation.weight_on_bit";
+        for (model, driller) in [
+            (json!({"set": {weight: -20e3}}), json!({"set": {weight: 20e3}})),
+            (json!({"set": {weight: "-20 kN"}}), json!({"set": {weight: "20 kN"}})),
+            (
+                json!({"set": {"operation": {"weight_on_bit": 0}}}),
+                json!({"set": {"operation": {"weight_on_bit": 0}}}),
+            ),
+            (
+                json!({"axes": {weight: {"values": [-1e4, 0]}}}),
+                json!({"axes": {weight: {"values": [1e4, 0]}}}),
+            ),
+            (
+                json!({"axes": {weight: {"from": -1e4, "to": -4e4, "count": 3, "scale": "log"}}}),
+                json!({"axes": {weight: {"from": 1e4, "to": 4e4, "count": 3, "scale": "log"}}}),
+            ),
+            (
+                json!({"design": "list", "points": [{weight: -1e4, "flow_rate": 0.01}]}),
+                json!({"design": "list", "points": [{weight: 1e4, "flow_rate": 0.01}]}),
+            ),
+        ] {
+            let [mut model, mut driller] = [model, driller];
+            model["preset"] = json!("paper-200m");
+            driller["preset"] = json!("paper-200m");
+            driller["signs"] = json!("driller");
+            assert_eq!(keys_in_signs(driller.clone()), keys_in_signs(model), "{driller}");
+        }
+        // The values of a preset are those of the model in any signs.
+        let preset = |signs| keys_in_signs(json!({"preset": "paper-200m", "signs": signs}));
+        assert_eq!(preset("driller"), preset("model"));
+    }
+
     #[test]
     fn texts_have_a_length_and_no_control_characters() {
         let of =

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use drillsweep_quantity::columns::*;
+use drillsweep_quantity::entry::{self, EntryError};
 use drillsweep_quantity::{Name, Quantity, units};
 use drillsweep_scenario::nearest;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,14 @@ pub enum LimitError {
     /// A limit is no number above zero.
     #[error("the limit of {0} must be a number greater than 0, or off")]
     Value(String),
+    /// A limit has a unit that is unknown, or of another dimension.
+    #[error("the limit of {column} must be {error}")]
+    Unit {
+        /// The column.
+        column: String,
+        /// Units that fit.
+        error: EntryError,
+    },
     /// There are too many.
     #[error("at most {MOST_LIMITS} limits can be given")]
     TooMany,
@@ -78,7 +87,7 @@ impl Default for OperatingLimits {
 }
 
 impl LimitChanges {
-    /// Changes from a text: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.
+    /// Changes from a text: `COLUMN:VALUE` or `COLUMN:off`, separated by commas. A value may have a unit: `largest_side_force:5 klbf`.
     ///
     /// # Errors
     /// An entry cannot be read, names no column of numbers, or is not above zero, or there are too many.
@@ -92,17 +101,26 @@ impl LimitChanges {
             let (column, value) =
                 entry.split_once(':').ok_or_else(|| LimitError::Form(shortened(entry).to_owned()))?;
             let (column, value) = (shortened(column.trim()), value.trim());
-            if Name::parse(column).is_none() {
+            let Some(name) = Name::parse(column) else {
                 return Err(LimitError::NoColumn {
                     name: column.to_owned(),
                     similar: nearest(column, ALL.iter().map(|quantity| quantity.name)).map(str::to_owned),
                 });
-            }
+            };
             if value == "off" {
                 changes.push((column.to_owned(), None));
                 continue;
             }
-            let limit = value.parse().ok().filter(|limit: &f64| limit.is_finite() && *limit > 0.0);
+            let limit = match (value.parse(), name.units()) {
+                (Err(_), Some(units)) => match entry::read(value, units) {
+                    Err(error @ EntryError::Unit(_)) => {
+                        return Err(LimitError::Unit { column: column.to_owned(), error });
+                    }
+                    read => read.ok(),
+                },
+                (number, _) => number.ok(),
+            };
+            let limit = limit.filter(|limit: &f64| limit.is_finite() && *limit > 0.0);
             let limit = limit.ok_or_else(|| LimitError::Value(column.to_owned()))?;
             changes.push((column.to_owned(), Some(limit)));
         }
@@ -179,6 +197,23 @@ mod tests {
         assert!(others.contains(&("orbit_radius_rms_57_7m", 2e-3)), "{others:?}");
         assert!(others.iter().all(|(column, _)| *column != "bit_stick_slip_severity"));
         assert_eq!(OperatingLimits::parse("").unwrap(), OperatingLimits::default());
+    }
+
+    #[test]
+    fn limits_have_units_of_their_columns() {
+        let limits = OperatingLimits::parse(
+            "largest_lateral_acceleration_rms:3 g,largest_side_force: 5 klbf,largest_bending_stress:20 ksi,largest_shock_rate_10g:2 1/min",
+        )
+        .unwrap();
+        assert_eq!(limits.of(&LARGEST_LATERAL_ACCELERATION_RMS), Some(29.419_95));
+        assert_eq!(limits.of(&LARGEST_SIDE_FORCE), Some(22_241.108_076_302_5));
+        let wrong =
+            OperatingLimits::parse("largest_lateral_acceleration_rms:3 klbf").unwrap_err().to_string();
+        assert_eq!(
+            wrong,
+            "the limit of largest_lateral_acceleration_rms must be a number with one of the units m/s2, g, ft/s2; \
+             `klbf` is a unit of force"
+        );
     }
 
     #[test]

@@ -308,6 +308,7 @@ pub(crate) mod value {
 
     use drillsweep_api::judgement::LimitChanges;
     use drillsweep_api::time_span;
+    use drillsweep_quantity::{Name, UnitChoice, entry};
     use serde::{Deserialize, Deserializer, de::Error};
 
     /// A finite number.
@@ -340,14 +341,16 @@ pub(crate) mod value {
         Ok(Some(text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()))
     }
 
-    /// Names with a finite number each, separated by commas: `flow_rate:0.01,mud_density:1200`.
+    /// Names with a finite number each, which may have a unit, separated by commas: `flow_rate:0.01,mud_density:10 ppg`.
     pub(crate) fn assignments<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Option<Vec<(String, f64)>>, D::Error> {
         let assignment = |text: String| {
             let (name, number) = text.rsplit_once(':')?;
-            let number: f64 = number.trim().parse().ok()?;
-            number.is_finite().then(|| (name.trim().to_owned(), number))
+            let (name, number) = (name.trim(), number.trim());
+            let with_unit = || entry::read(number, Name::parse(name)?.units()?).ok();
+            let number = number.parse().ok().or_else(with_unit)?;
+            f64::is_finite(number).then(|| (name.to_owned(), number))
         };
         let assignments: Option<Vec<_>> =
             names(deserializer)?.unwrap_or_default().into_iter().map(assignment).collect();
@@ -355,6 +358,12 @@ pub(crate) mod value {
             Some(assignments) => Ok(Some(assignments)),
             None => Err(D::Error::custom("must be names with a number each, such as mud.density:1200")),
         }
+    }
+
+    /// Units of columns: a system, and `COLUMN:UNIT`, separated by commas.
+    pub(crate) fn units<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<UnitChoice>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        UnitChoice::parse(&text).map(Some).map_err(|error| D::Error::custom(format_args!("must be {error}")))
     }
 
     /// Changes of limits: `COLUMN:VALUE` or `COLUMN:off`, separated by commas.

@@ -1,4 +1,4 @@
-//! Formats of tables: choice and writing.
+//! Forms of tables, format and units: choice and writing.
 
 use std::io;
 
@@ -7,8 +7,9 @@ use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::{ProblemDetails, ProblemKind};
 use drillsweep_chart::{ChartError, Drawing, PNG_WIDTH};
+use drillsweep_quantity::UnitChoice;
 use drillsweep_table::parquet::Cut;
-use drillsweep_table::{Sink, Source, Table, TableError, csv, json, npz, parquet};
+use drillsweep_table::{InUnits, Sink, Source, Table, TableError, csv, json, npz, parquet};
 use serde::Deserialize;
 
 use crate::answer::error::{Error, Result};
@@ -132,7 +133,7 @@ impl Format {
     }
 
     /// The format to serve: `?format=` if given, else the best that `Accept` allows, else JSON.
-    pub(crate) fn choose<A: RequestedFormat>(asked: Option<A>, headers: &HeaderMap) -> Result<Format> {
+    fn choose<A: RequestedFormat>(asked: Option<A>, headers: &HeaderMap) -> Result<Format> {
         if let Some(format) = asked {
             return Ok(format.into());
         }
@@ -147,6 +148,57 @@ impl Format {
             let detail = format!("this is served as {}, not as {accepted}", offered.join(", "));
             Error::new(ProblemKind::NotAcceptable, detail)
         })
+    }
+}
+
+/// Form of an answer: its format, and the units of its columns. Tags and names of files depend on both.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Form {
+    pub(crate) format: Format,
+    pub(crate) units: UnitChoice,
+}
+
+impl From<Format> for Form {
+    fn from(format: Format) -> Self {
+        Form { format, units: UnitChoice::default() }
+    }
+}
+
+impl Form {
+    /// The form to serve: the format as of [`Format::choose`], and the requested units, or those in which columns are kept.
+    pub(crate) fn choose<A: RequestedFormat>(
+        format: Option<A>,
+        units: Option<UnitChoice>,
+        headers: &HeaderMap,
+    ) -> Result<Self> {
+        Ok(Form { format: Format::choose(format, headers)?, units: units.unwrap_or_default() })
+    }
+
+    /// True if stored Parquet has this form.
+    pub(crate) fn is_stored(&self) -> bool {
+        self.format == Format::Parquet && self.units.is_kept()
+    }
+
+    /// Name of a file of this form.
+    fn file_name(&self, name: &str) -> String {
+        let extension = self.format.extension();
+        match self.units.suffix() {
+            Some(suffix) => format!("{name}-{suffix}.{extension}"),
+            None => format!("{name}.{extension}"),
+        }
+    }
+
+    fn write(&self, source: &impl Source, sink: &mut Sink<'_>) -> Result<(), TableError> {
+        match self.format {
+            Format::Json => json::write_to(source, sink),
+            Format::Csv if self.units.is_kept() => csv::write_to(source, sink),
+            Format::Csv => csv::write_with_units(source, sink),
+            Format::Parquet => parquet::write_to(source, sink),
+            Format::Npz => npz::write_to(source, sink),
+            Format::Svg | Format::Png => {
+                Err(io::Error::new(io::ErrorKind::Unsupported, "a table is no picture").into())
+            }
+        }
     }
 }
 
@@ -197,54 +249,50 @@ enum Content {
 }
 
 impl Answer {
-    /// A table in memory, or its columns `fields`, in a format other than a picture. Without a known tag, its contents are hashed, which
+    /// A table in memory in its kept units, or its columns `fields`, in a form other than a picture. Without a known tag, its contents are hashed, which
     /// takes as long as writing them.
     pub(crate) fn of_table(
         table: Table,
         fields: Option<&[String]>,
-        format: Format,
+        form: Form,
         name: &str,
         tag: Option<Tag>,
     ) -> Result<Self> {
-        let table = select(table, fields)?;
+        let table = select(table, fields)?.in_units(&form.units);
         let tag = match tag {
             Some(tag) => tag,
             None => {
                 let mut hasher = blake3::Hasher::new();
-                write(&table, format, &mut hasher)?;
+                form.write(&table, &mut hasher)?;
                 Tag::of_hash(&hasher.finalize())
             }
         };
-        Ok(Self { head: Head::new(format, name, tag), content: Content::Table(table) })
+        Ok(Self { head: Head::new(form, name, tag), content: Content::Table(table) })
     }
 
     /// A table in memory, or a picture that `draw` makes from all of it.
     pub(crate) fn of_table_or_picture(
         table: Table,
         fields: Option<&[String]>,
-        format: Format,
+        form: Form,
         name: &str,
         tag: Option<Tag>,
-        draw: impl FnOnce(&Table) -> Result<Drawing, ChartError>,
+        draw: impl FnOnce(&Table, &UnitChoice) -> Result<Drawing, ChartError>,
     ) -> Result<Self> {
-        let picture = match format {
-            Format::Svg => draw(&table)?.svg().into_bytes(),
-            Format::Png => draw(&table)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?,
-            _ => return Self::of_table(table, fields, format, name, tag),
+        let picture = match form.format {
+            Format::Svg => draw(&table, &form.units)?.svg().into_bytes(),
+            Format::Png => {
+                draw(&table, &form.units)?.png(PNG_WIDTH).map_err(|error| Error::internal(&error))?
+            }
+            _ => return Self::of_table(table, fields, form, name, tag),
         };
         let tag = tag.unwrap_or_else(|| Tag::of_hash(&blake3::hash(&picture)));
-        Ok(Self { head: Head::new(format, name, tag), content: Content::Picture(picture) })
+        Ok(Self { head: Head::new(form, name, tag), content: Content::Picture(picture) })
     }
 
-    /// A part of a stored table, in a format other than a picture.
-    pub(crate) fn of_part(
-        stored: Stored,
-        part: Cut<StoredFile>,
-        format: Format,
-        name: &str,
-        tag: Tag,
-    ) -> Self {
-        Self { head: Head::new(format, name, tag), content: Content::Part(Box::new((stored, part))) }
+    /// A part of a stored table, in a form other than a picture.
+    pub(crate) fn of_part(stored: Stored, part: Cut<StoredFile>, form: Form, name: &str, tag: Tag) -> Self {
+        Self { head: Head::new(form, name, tag), content: Content::Part(Box::new((stored, part))) }
     }
 
     /// Head and body of a picture.
@@ -261,7 +309,7 @@ impl Answer {
     /// A picture of these bytes, for tests of the cache of pictures.
     #[cfg(test)]
     pub(crate) fn of_bytes(bytes: &str) -> Self {
-        let head = Head::new(Format::Svg, "test", Tag::of(Format::Svg, &bytes));
+        let head = Head::new(Format::Svg.into(), "test", Tag::of(Format::Svg, &bytes));
         Self { head, content: Content::Picture(bytes.as_bytes().to_vec()) }
     }
 
@@ -273,8 +321,9 @@ impl Answer {
     /// Writes the body.
     pub(crate) fn write(&self, sink: &mut Sink<'_>) -> Result<(), TableError> {
         match &self.content {
-            Content::Table(table) => write(table, self.head.format, sink),
-            Content::Part(part) => write(&part.1, self.head.format, sink),
+            Content::Table(table) => self.head.form.write(table, sink),
+            Content::Part(part) if self.head.form.units.is_kept() => self.head.form.write(&part.1, sink),
+            Content::Part(part) => self.head.form.write(&InUnits::new(&part.1, &self.head.form.units), sink),
             Content::Picture(bytes) => Ok(sink.write_all(bytes)?),
         }
     }
@@ -295,37 +344,25 @@ pub(crate) fn select(table: Table, fields: Option<&[String]>) -> Result<Table> {
     Ok(selected.map_err(|missing| Box::new(ProblemDetails::no_such_column(&table, &missing)))?)
 }
 
-fn write(source: &impl Source, format: Format, sink: &mut Sink<'_>) -> Result<(), TableError> {
-    match format {
-        Format::Json => json::write_to(source, sink),
-        Format::Csv => csv::write_to(source, sink),
-        Format::Parquet => parquet::write_to(source, sink),
-        Format::Npz => npz::write_to(source, sink),
-        Format::Svg | Format::Png => {
-            Err(io::Error::new(io::ErrorKind::Unsupported, "a table is no picture").into())
-        }
-    }
-}
-
-/// Head of a body: format, file name, and tag.
+/// Head of a body: form, file name, and tag.
 #[derive(Debug, Clone)]
 pub(crate) struct Head {
-    format: Format,
+    form: Form,
     name: String,
     tag: Tag,
 }
 
 impl Head {
-    pub(crate) fn new(format: Format, name: &str, tag: Tag) -> Self {
-        Self { format, name: name.to_owned(), tag }
+    pub(crate) fn new(form: Form, name: &str, tag: Tag) -> Self {
+        Self { form, name: name.to_owned(), tag }
     }
 
     /// The response with this body.
     pub(crate) fn response(self, body: Body) -> Response {
         let mut response = self.tag.on(body.into_response());
         let headers = response.headers_mut();
-        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.format.media_type()));
-        let disposition = format!("inline; filename=\"{}.{}\"", self.name, self.format.extension());
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(self.form.format.media_type()));
+        let disposition = format!("inline; filename=\"{}\"", self.form.file_name(&self.name));
         if let Ok(disposition) = disposition.parse() {
             headers.insert(header::CONTENT_DISPOSITION, disposition);
         }

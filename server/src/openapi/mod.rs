@@ -62,7 +62,8 @@ fn bound_members(document: &mut Value) {
         version = "1",
         description = "Sweeps of a nonlinear drillstring simulation over flow rate, mud density and any other number. \
             SI units throughout; a field in another unit says so in its name. In requests a number of a scenario, of a change \
-            or of an axis may be a text with its unit, such as `\"10.5 ppg\"`, `\"500 gpm\"` or `\"12 1/4 in\"`; answers have numbers.",
+            or of an axis may be a text with its unit, such as `\"10.5 ppg\"`, `\"500 gpm\"` or `\"12 1/4 in\"`; answers have numbers. \
+            Tables and pictures are in SI units or in those that `units` chooses.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     components(schemas(

@@ -112,7 +112,7 @@ pub(crate) async fn modes(
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DiagnosisQuery {
-    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
+    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or with a unit, or `COLUMN:off`, separated by commas. A column with a limit that is exceeded
     /// makes the point `over_limit`; `bit_stick_slip_severity`, `backward_whirl_fraction`, `forward_whirl_fraction` and `largest_shock_rate_10g`
     /// decide classes of their own.
     #[serde(default, deserialize_with = "value::limits")]

@@ -64,7 +64,7 @@ pub(crate) struct ReportQuery {
     #[serde(default)]
     #[param(inline)]
     units: UnitSystem,
-    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    /// Changes of the service's limits: `COLUMN:VALUE` in the column's unit or with a unit, or `COLUMN:off`, separated by commas.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
     limits: LimitChanges,

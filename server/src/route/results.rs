@@ -6,7 +6,7 @@ use axum::response::Response;
 use drillsweep_api::view::history::{self, Decimation, Extremes};
 use drillsweep_api::view::{node, orbit, spectrum};
 use drillsweep_chart as chart;
-use drillsweep_quantity::UnitSystem;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::{ROTATION_SPEED, TORQUE};
 use drillsweep_store::Store;
 use drillsweep_table::parquet::Cut;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Deserializer};
 use crate::answer::error::{Error, Result};
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, Head, PictureFormat, TableFormat};
+use crate::answer::format::{self, Answer, Form, Format, Head, PictureFormat, TableFormat};
 use crate::answer::need::Need;
 use crate::answer::recordings::{self, Recording, Samples, SpectrumSource, mark_cut, title_of_cut};
 use crate::answer::records;
@@ -46,6 +46,11 @@ pub(crate) struct TableQuery {
     /// Format of the table; absent means that `Accept` decides.
     #[param(inline)]
     pub(crate) format: Option<TableFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    pub(crate) units: Option<UnitChoice>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
@@ -60,6 +65,11 @@ pub(crate) struct PictureQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     pub(crate) format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    pub(crate) units: Option<UnitChoice>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
@@ -81,26 +91,27 @@ pub(crate) struct PictureQuery {
 pub(crate) async fn profile(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(PictureQuery { format, fields }): Query<PictureQuery>,
+    Query(PictureQuery { format, units, fields }): Query<PictureQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(format, &headers)?;
+    let form = Form::choose(format, units, &headers)?;
     let profile = recordings::stored(&app.store, &id, n, tables::PROFILE.name).await?;
     let file_name = file_name(&id, n, tables::PROFILE.name);
-    if !format.is_picture() {
-        return part(&app, profile, fields, format, file_name, &headers).await;
+    if !form.format.is_picture() {
+        return part(&app, profile, fields, form, file_name, &headers).await;
     }
-    let title = caption(&app.store, &id, n, "Profile").await?;
-    let tag = Tag::of(format, &(profile.blob(), &fields, &title));
+    let title = caption(&app.store, &id, n, "Profile", &form.units).await?;
+    let tag = Tag::of(&form, &(profile.blob(), &fields, &title));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let memory = format.memory(profile.memory().await?);
+    let memory = form.format.memory(profile.memory().await?);
     let key = format!("{} {id}/{n}", tag.as_str());
-    app.answer(format, &key, memory, move || {
+    app.answer(form.format, &key, memory, move || {
         let table = profile.read(None)?;
-        let draw = |table: &Table| chart::profile(table, fields.as_deref(), &title, UnitSystem::Si);
-        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+        let draw =
+            |table: &Table, units: &UnitChoice| chart::profile(table, fields.as_deref(), &title, units);
+        Answer::of_table_or_picture(table, None, form, &file_name, Some(tag), draw)
     })
     .await
 }
@@ -227,34 +238,34 @@ async fn whole_table(
     Query(query): Query<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units, &headers)?;
     let table = recordings::stored(&app.store, &id, n, name).await?;
-    part(&app, table, query.fields, format, file_name(&id, n, name), &headers).await
+    part(&app, table, query.fields, form, file_name(&id, n, name), &headers).await
 }
 
-/// A stored table, or some columns of it, in a format other than a picture; Parquet is sent without conversion.
+/// A stored table, or some columns of it, in a form other than a picture; Parquet in kept units is sent without conversion.
 async fn part(
     app: &App,
     stored: Stored,
     fields: Option<Vec<String>>,
-    format: Format,
+    form: Form,
     file_name: String,
     headers: &HeaderMap,
 ) -> Result<Response> {
-    if format == Format::Parquet && fields.is_none() {
+    if form.is_stored() && fields.is_none() {
         return whole_file(app, stored, &file_name, headers).await;
     }
-    let tag = Tag::of(format, &(stored.blob(), &fields));
+    let tag = Tag::of(&form, &(stored.blob(), &fields));
     if let Some(unchanged) = tag.unchanged(headers) {
         return Ok(unchanged);
     }
-    let place = app.view(Need::of(&stored, format, fields.as_deref()).await?).await?;
+    let place = app.view(Need::of(&stored, form.format, fields.as_deref()).await?).await?;
     place
         .answer(move || {
             let table = stored.open()?;
             let layout = format::select(table.layout().clone(), fields.as_deref())?;
             let cut = table.cut(layout, 0..usize::MAX, 1)?;
-            Ok(Answer::of_part(stored, cut, format, &file_name, tag))
+            Ok(Answer::of_part(stored, cut, form, &file_name, tag))
         })
         .await
 }
@@ -266,11 +277,12 @@ pub(super) async fn whole_file(
     file_name: &str,
     headers: &HeaderMap,
 ) -> Result<Response> {
-    let tag = Tag::of(Format::Parquet, &stored.blob());
+    let form = Form::from(Format::Parquet);
+    let tag = Tag::of(&form, &stored.blob());
     if let Some(unchanged) = tag.unchanged(headers) {
         return Ok(unchanged);
     }
-    let head = Head::new(Format::Parquet, file_name, tag);
+    let head = Head::new(form, file_name, tag);
     let length = stored.length();
     let mut response = head.response(stored.body(0..length, app.file()).await?);
     response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
@@ -309,6 +321,11 @@ pub(crate) struct HistoryQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
@@ -349,7 +366,8 @@ pub(crate) async fn history(
     Query(query): Query<HistoryQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
+    let format = form.format;
     check_window(query.from, query.to)?;
     let choice = match (query.node, query.depth) {
         (None, None) if !query.nearest => None,
@@ -357,10 +375,10 @@ pub(crate) async fn history(
     };
     let file_name = file_name(&id, n, tables::HISTORY.name);
     let recording = Recording::load(&app.store, &id, n).await?;
-    if format == Format::Parquet && query.is_whole() {
+    if form.is_stored() && query.is_whole() {
         return whole_file(&app, recording.history, &file_name, &headers).await;
     }
-    let title = caption(&app.store, &id, n, "History").await?;
+    let title = caption(&app.store, &id, n, "History", &form.units).await?;
     let shows_bit = format.is_picture() && choice.is_none() && query.fields.is_none();
     let snapshots = match shows_bit {
         true => recordings::stored_if_any(&app.store, &id, n, tables::SNAPSHOTS.name).await?,
@@ -368,7 +386,7 @@ pub(crate) async fn history(
     };
     let snapshots = snapshots.map(|stored| Snapshots::new(stored, &recording.statics)).transpose()?;
     let blob_of_snapshots = snapshots.as_ref().map(|snapshots| snapshots.stored().blob());
-    let tag = Tag::of(format, &(recording.blobs(), blob_of_snapshots, &query, &title));
+    let tag = Tag::of(&form, &(recording.blobs(), blob_of_snapshots, &query, &title));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -404,9 +422,9 @@ pub(crate) async fn history(
             let part = history.cut(layout, samples, stride)?;
             if let Some(most) = extremes {
                 let table = rows_of_extremes(&recording.history, &part, most)?;
-                return Answer::of_table(table, None, format, &file_name, Some(tag));
+                return Answer::of_table(table, None, form, &file_name, Some(tag));
             }
-            return Ok(Answer::of_part(recording.history, part, format, &file_name, tag));
+            return Ok(Answer::of_part(recording.history, part, form, &file_name, tag));
         }
         let layout = chart::shown_of_history(&layout, query.fields.as_deref())?;
         let columns = layout.columns.len();
@@ -428,9 +446,11 @@ pub(crate) async fn history(
             false => None,
         };
         let title = title_of_cut(&title, cut_at);
-        let draw =
-            |table: &Table| chart::history(table, query.fields.as_deref(), &places, bit.as_ref(), &title);
-        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+        let fields = query.fields.as_deref();
+        let draw = |table: &Table, units: &UnitChoice| {
+            chart::history(table, fields, &places, bit.as_ref(), &title, units)
+        };
+        Answer::of_table_or_picture(table, None, form, &file_name, Some(tag), draw)
     })
     .await
 }
@@ -526,6 +546,11 @@ pub(crate) struct OrbitQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
 }
 
 /// Path of a node across the hole
@@ -546,7 +571,8 @@ pub(crate) async fn orbit(
     Query(query): Query<OrbitQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
+    let format = form.format;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let max_points = query.max_points.map(|points| points as usize);
@@ -555,8 +581,8 @@ pub(crate) async fn orbit(
         return Err(Error::parameter("max_points", Some(&points.to_string()), detail));
     }
     let recording = Recording::load(&app.store, &id, n).await?;
-    let title = caption(&app.store, &id, n, "Orbit").await?;
-    let tag = Tag::of(format, &(recording.blobs(), &query, &title));
+    let title = caption(&app.store, &id, n, "Orbit", &form.units).await?;
+    let tag = Tag::of(&form, &(recording.blobs(), &query, &title));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -569,8 +595,8 @@ pub(crate) async fn orbit(
         let file_name = file_name(&id, n, &format!("orbit-{}", motion.node));
         let title = title_of_cut(&title, motion.cut_at);
         drop(motion);
-        let draw = |table: &Table| chart::orbit(table, &hole, &title, query.zoom, UnitSystem::Si);
-        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+        let draw = |table: &Table, units: &UnitChoice| chart::orbit(table, &hole, &title, query.zoom, units);
+        Answer::of_table_or_picture(table, None, form, &file_name, Some(tag), draw)
     })
     .await
 }
@@ -611,6 +637,11 @@ pub(crate) struct SpectrumQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
 }
 
 fn default_range() -> f64 {
@@ -652,14 +683,15 @@ pub(crate) async fn spectrum(
     Query(query): Query<SpectrumQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
+    let format = form.format;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let source = SpectrumSource::load(&app.store, &id, n).await?;
-    let title = caption(&app.store, &id, n, "Full spectrum").await?;
+    let title = caption(&app.store, &id, n, "Full spectrum", &form.units).await?;
     let point = app.store.point(&id, n.into()).await?;
     let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
-    let tag = Tag::of(format, &(source.blobs(), &query, &title, resolved_hz));
+    let tag = Tag::of(&form, &(source.blobs(), &query, &title, resolved_hz));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -681,8 +713,8 @@ pub(crate) async fn spectrum(
         let table = spectrum::mark_resolved(table, resolved_hz);
         let file_name = file_name(&id, n, &format!("spectrum-{node}"));
         let title = title_of_cut(&title, cut_at);
-        let draw = |table: &Table| chart::spectrum(table, &title);
-        Answer::of_table_or_picture(table, None, format, &file_name, Some(tag), draw)
+        let draw = |table: &Table, units: &UnitChoice| chart::spectrum(table, &title, units);
+        Answer::of_table_or_picture(table, None, form, &file_name, Some(tag), draw)
     })
     .await
 }
@@ -697,12 +729,12 @@ pub(crate) fn check_window(from: Option<f64>, to: Option<f64>) -> Result<()> {
 }
 
 /// Title of a picture: its contents and point.
-async fn caption(store: &Store, id: &str, n: u32, what: &str) -> Result<String> {
+async fn caption(store: &Store, id: &str, n: u32, what: &str, units: &UnitChoice) -> Result<String> {
     let parameters = match store.point(id, n.into()).await? {
         Some(point) => records::parameters(&point.parameters_json)?,
         None => IndexMap::new(),
     };
-    Ok(chart::caption(what, &parameters))
+    Ok(chart::caption(what, &parameters, units))
 }
 
 pub(crate) fn file_name(id: &str, n: u32, what: &str) -> String {

@@ -4,13 +4,14 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::history;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_table::tables;
 use serde::Deserialize;
 
 use crate::answer::error::{Error, Result};
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{self, Answer, Format, TableFormat};
+use crate::answer::format::{self, Answer, Form, TableFormat};
 use crate::answer::recordings;
 use crate::answer::snapshots::Snapshots;
 use crate::app::App;
@@ -39,6 +40,11 @@ pub(crate) struct SnapshotsQuery {
     /// Format of the table; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<TableFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
@@ -74,11 +80,11 @@ pub(crate) async fn show(
     Query(query): Query<SnapshotsQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
     check_window(query.from, query.to)?;
     let file_name = file_name(&id, n, tables::SNAPSHOTS.name);
     let stored = recordings::stored(&app.store, &id, n, tables::SNAPSHOTS.name).await?;
-    if format == Format::Parquet && query.is_whole() {
+    if form.is_stored() && query.is_whole() {
         return whole_file(&app, stored, &file_name, &headers).await;
     }
     let statics = recordings::stored(&app.store, &id, n, tables::STATICS.name).await?;
@@ -88,11 +94,11 @@ pub(crate) async fn show(
         let detail = format!("the string has the nodes 1 to {}", snapshots.nodes());
         return Err(Error::parameter("node", Some(&node.to_string()), detail));
     }
-    let tag = Tag::of(format, &(snapshots.stored().blob(), snapshots.nodes(), &query));
+    let tag = Tag::of(&form, &(snapshots.stored().blob(), snapshots.nodes(), &query));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(snapshots.stored().memory().await?)).await?;
+    let place = app.view(form.format.memory(snapshots.stored().memory().await?)).await?;
     place
         .answer(move || {
             let table = snapshots.stored().open()?;
@@ -116,7 +122,7 @@ pub(crate) async fn show(
                 .attribute("interval", times.interval() * stride as f64);
             let layout = format::select(layout, query.fields.as_deref())?;
             let part = snapshots.part(table, layout, &frames, (node, stride))?;
-            Ok(Answer::of_part(snapshots.into_stored(), part, format, &file_name, tag))
+            Ok(Answer::of_part(snapshots.into_stored(), part, form, &file_name, tag))
         })
         .await
 }

@@ -5,12 +5,13 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::spectrogram::{MOST_AMPLITUDES, SpectrogramRequest, spectrogram};
 use drillsweep_api::view::{node, spectrum};
+use drillsweep_quantity::UnitChoice;
 use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::format::{Answer, Form, TableFormat};
 use crate::answer::recordings::Recording;
 use crate::answer::records;
 use crate::app::App;
@@ -58,6 +59,11 @@ pub(crate) struct SpectrogramQuery {
     /// Format of the table; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<TableFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
 }
 
 fn hann() -> spectrum::Weighting {
@@ -101,18 +107,18 @@ pub(crate) async fn show(
 ) -> Result<Response> {
     /// Bytes of an amplitude with time and frequency, in memory and in writing.
     const OF_AMPLITUDE: u64 = 64;
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
     check_window(query.from, query.to)?;
     let choice = node::Choice::from_parameters(query.node, query.depth, query.nearest)?;
     let recording = Recording::load(&app.store, &id, n).await?;
     let point = app.store.point(&id, n.into()).await?;
     let resolved_hz = point.as_ref().map(records::resolved_hz).transpose()?.flatten();
-    let tag = Tag::of(format, &(recording.blobs(), &query, resolved_hz));
+    let tag = Tag::of(&form, &(recording.blobs(), &query, resolved_hz));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
     let reading = recording.memory_of_orbit().await? + MOST_AMPLITUDES as u64 * OF_AMPLITUDE;
-    let place = app.view(format.memory(reading)).await?;
+    let place = app.view(form.format.memory(reading)).await?;
     place
         .answer(move || {
             let SpectrogramQuery { from, to, window_s, step_s, window, range_hz, .. } = query;
@@ -122,7 +128,7 @@ pub(crate) async fn show(
             let table = motion.label(spectrogram(&motion.columns(), &request)?);
             let table = spectrum::mark_resolved(table, resolved_hz);
             let file_name = file_name(&id, n, &format!("spectrogram-{}", motion.node));
-            Answer::of_table(table, None, format, &file_name, Some(tag))
+            Answer::of_table(table, None, form, &file_name, Some(tag))
         })
         .await
 }

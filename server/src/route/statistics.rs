@@ -5,13 +5,14 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::view::node::Choice;
 use drillsweep_api::view::statistics::StatisticsTable;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_table::tables::STATISTICS;
 use serde::Deserialize;
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, TableFormat};
+use crate::answer::format::{Answer, Form, TableFormat};
 use crate::answer::recordings::{Recording, mark_cut};
 use crate::app::App;
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
@@ -41,6 +42,11 @@ pub(crate) struct StatisticsQuery {
     /// Format of the table; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<TableFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
     /// Only these columns, separated by commas.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
@@ -64,18 +70,18 @@ pub(crate) async fn show(
     Query(query): Query<StatisticsQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
     check_window(query.from, query.to)?;
     let choice = match (query.node, query.depth) {
         (None, None) if !query.nearest => None,
         (node, depth) => Some(Choice::from_parameters(node, depth, query.nearest)?),
     };
     let recording = Recording::load(&app.store, &id, n).await?;
-    let tag = Tag::of(format, &(recording.blobs(), &query));
+    let tag = Tag::of(&form, &(recording.blobs(), &query));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let place = app.view(format.memory(recording.memory_of_orbit().await?)).await?;
+    let place = app.view(form.format.memory(recording.memory_of_orbit().await?)).await?;
     place
         .answer(move || {
             let choices = match choice {
@@ -94,7 +100,7 @@ pub(crate) async fn show(
             }
             let file_name = file_name(&id, n, STATISTICS.name);
             let table = mark_cut(table.finish(), cut_at);
-            Answer::of_table(table, query.fields.as_deref(), format, &file_name, Some(tag))
+            Answer::of_table(table, query.fields.as_deref(), form, &file_name, Some(tag))
         })
         .await
 }

@@ -7,7 +7,7 @@ use axum::response::Response;
 use drillsweep_api::axis::{Axis, Scale};
 use drillsweep_api::torque_drag::{Broomstick, DragMode, DragSettings};
 use drillsweep_chart::broomstick;
-use drillsweep_quantity::UnitSystem;
+use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::HOOK_LOAD;
 use drillsweep_table::Table;
 use serde::de::Error as _;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Deserializer};
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::format::{Answer, Form, PictureFormat};
 use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
@@ -51,6 +51,11 @@ pub(crate) struct TorqueDragQuery {
     /// Format of the table, or of a picture of `field`; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, separated by commas. CSV then has
+    /// units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,hook_load:kN")]
+    units: Option<UnitChoice>,
     /// Column that a picture shows, hook load unless given.
     field: Option<String>,
 }
@@ -113,9 +118,9 @@ pub(crate) async fn show(
 ) -> Result<Response> {
     /// Bytes of a case, in memory and in writing.
     const OF_CASE: u64 = 512;
-    let format = Format::choose(query.format, &headers)?;
+    let form = Form::choose(query.format, query.units.clone(), &headers)?;
     let point = point(&app, &id, n).await?;
-    let tag = Tag::of(format, &("torque_drag", &point.key, &query));
+    let tag = Tag::of(&form, &("torque_drag", &point.key, &query));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -125,13 +130,14 @@ pub(crate) async fn show(
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
     let (table, _memory): (Table, _) =
         place.run(move |_: &mut Work| Ok(broom.table(&point.scenario)?)).await?;
-    let place = app.view(format.memory(OF_CASE * table.rows() as u64)).await?;
+    let place = app.view(form.format.memory(OF_CASE * table.rows() as u64)).await?;
     place
         .answer(move || {
             let column = field.as_deref().unwrap_or(HOOK_LOAD.name);
-            let draw = |table: &Table| broomstick(table, column, "Torque and drag", UnitSystem::Si);
+            let draw =
+                |table: &Table, units: &UnitChoice| broomstick(table, column, "Torque and drag", units);
             let name = file_name(&id, n, "torque-drag");
-            Answer::of_table_or_picture(table, None, format, &name, Some(tag), draw)
+            Answer::of_table_or_picture(table, None, form, &name, Some(tag), draw)
         })
         .await
 }

@@ -14,7 +14,7 @@ use tokio::runtime::Handle;
 use crate::answer::blocking::blocking;
 use crate::answer::error::{Error, Result};
 use crate::answer::extract::{Path, Query};
-use crate::answer::format::{Answer, Format};
+use crate::answer::format::{Answer, Form};
 use crate::answer::records;
 use crate::app::App;
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
@@ -128,10 +128,10 @@ impl Verified {
 pub(crate) async fn show(
     State(app): State<App>,
     Path(id): Path<String>,
-    Query(TableQuery { format, fields }): Query<TableQuery>,
+    Query(TableQuery { format, units, fields }): Query<TableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(format, &headers)?;
+    let form = Form::choose(format, units, &headers)?;
     if app.store.sweep_version(&id).await?.is_none() {
         return Err(records::no_such_sweep(&id));
     }
@@ -140,7 +140,7 @@ pub(crate) async fn show(
     place
         .answer(move || {
             let name = format!("sweep-{id}-verification");
-            Answer::of_table(verified.table(), fields.as_deref(), format, &name, None)
+            Answer::of_table(verified.table(), fields.as_deref(), form, &name, None)
         })
         .await
 }

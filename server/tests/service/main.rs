@@ -25,5 +25,6 @@ mod snapshots;
 mod spectrogram;
 mod submit;
 mod trust;
+mod units;
 mod upkeep;
 mod verification;

@@ -207,7 +207,7 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         (r#"{"preset": "paper-200m", "axis": {}}"#, "/axis", "there is no field `axis`"),
         (r#"{"preset": 200}"#, "/preset", "must be a string"),
         (r#"{"axes": {"flow_rate": {"from": 1, "count": 2}}}"#, "/axes/flow_rate", "`to`"),
-        (r#"{"axes": {"flow_rate": {"values": [1, "two"]}}}"#, "/axes/flow_rate", "must be a number"),
+        (r#"{"axes": {"flow_rate": {"values": [1, [2]]}}}"#, "/axes/flow_rate", "must be a number"),
         (r#"{"preset": "#, "", "EOF"),
         (r#"{"preset": "paper-200m"} {}"#, "", "trailing"),
         (r#" [null, "anne"]"#, "", "must be an object"),

@@ -20,7 +20,7 @@ from drillsweep.point import FailureClass, Point
 from drillsweep.problem import PROBLEM_PREFIX, ConnectionError, Problem, UnsupportedServer, problem, warn
 from drillsweep.quantity import Quantity, read_quantities
 from drillsweep.request import Accuracy, Cache, Outputs, request_to_json
-from drillsweep.sweep import Plan, Sweep
+from drillsweep.sweep import Plan, Signs, Sweep
 
 DEFAULT_SERVER = "http://127.0.0.1:7340"
 API_VERSION = "1"
@@ -86,6 +86,7 @@ class Client:
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
+        signs: Signs | None = None,
         tags: Iterable[str] | None = None,
         cache: Cache | None = None,
         idempotency_key: str | None = None,
@@ -116,6 +117,8 @@ class Client:
             name: A name for people.
             owner: Owner, whose share of the workers it counts against.
             priority: Higher goes first among the sweeps of one owner, -10 to 10.
+            signs: `"driller"` takes compression in `operation.weight_on_bit`, and opposition to clockwise rotation in
+                `operation.torque_on_bit`, as positive; `"model"` as negative (the default).
             tags: Words to find it by.
             cache: Policy for points that were computed before: `reuse` takes their results (the default),
                 `refresh` computes them anew, `only` takes them and computes nothing.
@@ -130,7 +133,14 @@ class Client:
             NoResult: Points have not been computed, and `cache` is `only`; the text names them.
         """
         fields = design_to_json(design, samples, seed, skip, points)
-        fields |= {"outputs": outputs, "verify": verify, "name": name, "owner": owner, "priority": priority}
+        fields |= {
+            "outputs": outputs,
+            "verify": verify,
+            "name": name,
+            "owner": owner,
+            "priority": priority,
+            "signs": signs,
+        }
         body = request_to_json(preset, scenario, set, accuracy, axes, tags, **fields)
         sweep = self._submit("/v1/sweeps", body, idempotency_key, cache)
         warn(sweep.warnings, stacklevel=2)
@@ -147,12 +157,13 @@ class Client:
         name: str | None = None,
         owner: str | None = None,
         priority: int | None = None,
+        signs: Signs | None = None,
         tags: Iterable[str] | None = None,
         cache: Cache | None = None,
         idempotency_key: str | None = None,
     ) -> Sweep:
         """Submits a single run: a sweep whose only point is 1. Arguments are those of `submit`."""
-        fields = {"outputs": outputs, "name": name, "owner": owner, "priority": priority}
+        fields = {"outputs": outputs, "name": name, "owner": owner, "priority": priority, "signs": signs}
         body = request_to_json(preset, scenario, set, accuracy, None, tags, **fields)
         sweep = self._submit("/v1/runs", body, idempotency_key, cache)
         warn(sweep.warnings, stacklevel=2)

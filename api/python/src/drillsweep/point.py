@@ -144,6 +144,7 @@ class Point(Reported):
         time: TimeWindow = (None, None),
         max_points: int | None = None,
         decimation: Decimation | None = None,
+        units: str | None = None,
     ) -> Table:
         """The recorded motion of one node, or of all: `time`, and `u_N`, `v_N`, ..., `torque_N` for node N.
 
@@ -155,8 +156,9 @@ class Point(Reported):
             max_points: Largest number of rows.
             decimation: Choice of the rows of a longer history: `stride` (the default), every k-th; `minmax`, those with
                 the extremes of each column.
+            units: Units of the columns: `"si"`, `"field"`, or `"field,u:mm"`; None means the kept units.
         """
-        query = {"max_points": max_points, "decimation": decimation}
+        query = {"max_points": max_points, "decimation": decimation, "units": units}
         return self.view("history", **_node_window(node, depth, nearest, time), **query)
 
     def statistics(
@@ -166,13 +168,14 @@ class Point(Reported):
         depth: float | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
+        units: str | None = None,
     ) -> Table:
         """Sizes of orbits over a window: a row for one node, or for each recorded one.
 
         Columns: `orbit_radius_rms`, `orbit_mean_radius`, `orbit_radius_deviation`, `orbit_largest_radius`,
-        `orbit_smallest_radius`, `orbit_offset`, `peak_to_peak_u`, `peak_to_peak_v`.
+        `orbit_smallest_radius`, `orbit_offset`, `peak_to_peak_u`, `peak_to_peak_v`; in `units` as of `history`.
         """
-        return self.view("statistics", **_node_window(node, depth, nearest, time))
+        return self.view("statistics", **_node_window(node, depth, nearest, time), units=units)
 
     def orbit(
         self,
@@ -182,6 +185,7 @@ class Point(Reported):
         nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
+        units: str | None = None,
     ) -> Table:
         """The path of a recorded node across the hole: `time`, `u`, `v`, `radius`.
 
@@ -191,8 +195,9 @@ class Point(Reported):
             nearest: Take the recorded node nearest to `depth`, however far.
             time: Window [s].
             max_points: Largest number of rows; the extremes stay.
+            units: Units of the columns: `"si"`, `"field"`, or `"field,u:mm"`; None means the kept units.
         """
-        return self.view("orbit", **_node_window(node, depth, nearest, time), max_points=max_points)
+        return self.view("orbit", **_node_window(node, depth, nearest, time), max_points=max_points, units=units)
 
     def spectrum(
         self,
@@ -204,6 +209,7 @@ class Point(Reported):
         window: SpectrumWindow | None = None,
         range_hz: float | None = None,
         peaks: int | None = None,
+        units: str | None = None,
     ) -> Table:
         """The full spectrum of a node's orbit: `frequency` (positive is forward whirl), `amplitude`, `peak_to_peak`.
 
@@ -218,8 +224,9 @@ class Point(Reported):
             window: Weighting of the samples, `hann` or `rectangular`.
             range_hz: Frequencies from minus to plus this [Hz].
             peaks: Largest number of peaks in the list, the highest first.
+            units: Units of the columns: `"si"`, `"field"`, or `"field,u:mm"`; None means the kept units.
         """
-        query = {"window": window, "range_hz": range_hz, "peaks": peaks}
+        query = {"window": window, "range_hz": range_hz, "peaks": peaks, "units": units}
         return self.view("spectrum", **_node_window(node, depth, nearest, time), **query)
 
     def spectrogram(
@@ -233,6 +240,7 @@ class Point(Reported):
         step_s: float | None = None,
         window: SpectrumWindow | None = None,
         range_hz: float | None = None,
+        units: str | None = None,
     ) -> Table:
         """The full spectrum of a node's orbit over time: `time`, `frequency` (positive is forward whirl), `amplitude`.
 
@@ -247,8 +255,9 @@ class Point(Reported):
             step_s: From the beginning of a window to that of the next [s].
             window: Weighting of the samples in each window, `hann` or `rectangular`.
             range_hz: Frequencies from minus to plus this [Hz].
+            units: Units of the columns: `"si"`, `"field"`, or `"field,u:mm"`; None means the kept units.
         """
-        query = {"window_s": window_s, "step_s": step_s, "window": window, "range_hz": range_hz}
+        query = {"window_s": window_s, "step_s": step_s, "window": window, "range_hz": range_hz, "units": units}
         return self.view("spectrogram", **_node_window(node, depth, nearest, time), **query)
 
     def snapshots(
@@ -258,6 +267,7 @@ class Point(Reported):
         time: TimeWindow = (None, None),
         max_frames: int | None = None,
         fields: Sequence[str] | None = None,
+        units: str | None = None,
     ) -> Table:
         """Snapshots of the whole string, if the scenario requests them (`recording.snapshots`).
 
@@ -270,36 +280,38 @@ class Point(Reported):
             time: Window [s].
             max_frames: Largest number of snapshots; every k-th stays.
             fields: Only these columns.
+            units: Units of the columns: `"si"`, `"field"`, or `"field,u:mm"`; None means the kept units.
         """
         names = ",".join(fields) if fields is not None else None
-        query = {"node": node, "max_frames": max_frames, "fields": names}
+        query = {"node": node, "max_frames": max_frames, "fields": names, "units": units}
         return self.view("snapshots", **{"from": time[0], "to": time[1]}, **query)
 
-    def lines(self) -> Table:
+    def lines(self, *, units: str | None = None) -> Table:
         """Strongest spectral lines of the recorded nodes; `diagnosis` names their causes."""
-        return self.view("lines")
+        return self.view("lines", units=units)
 
-    def contacts(self) -> Table:
+    def contacts(self, *, units: str | None = None) -> Table:
         """Contacts of every node with the hole over the run."""
-        return self.view("contacts")
+        return self.view("contacts", units=units)
 
-    def loads(self) -> Table:
+    def loads(self, *, units: str | None = None) -> Table:
         """Loads of every node over the window of the statistics: accelerations, whirl, stick-slip, stresses."""
-        return self.view("loads")
+        return self.view("loads", units=units)
 
-    def energy(self) -> Table:
+    def energy(self, *, units: str | None = None) -> Table:
         """The energy ledger over the run."""
-        return self.view("energy")
+        return self.view("energy", units=units)
 
-    def course(self) -> Table:
+    def course(self, *, units: str | None = None) -> Table:
         """Motion over the whole of a run that ends once it has settled, at 20 Hz at most."""
-        return self.view("course")
+        return self.view("course", units=units)
 
-    def diagnosis(self, limits: Mapping[str, float | None] | None = None) -> dict[str, Any]:
+    def diagnosis(self, limits: Mapping[str, float | str | None] | None = None) -> dict[str, Any]:
         """Class of the motion by limits, and causes of the spectral lines.
 
         Args:
-            limits: Changes of the service's limits, by column in the column's unit; None removes one.
+            limits: Changes of the service's limits, by column, as numbers in the column's unit or
+                texts with a unit; None removes one.
         """
         return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
 
@@ -323,6 +335,7 @@ class Point(Reported):
         friction: Sequence[float] | None = None,
         travelling_weight: float | None = None,
         axial_speed: float | None = None,
+        units: str | None = None,
     ) -> Table:
         """Hook load and surface torque of a soft string over the depth of the bit, with margins: a row a case.
 
@@ -335,13 +348,15 @@ class Point(Reported):
             friction: Friction factors of the whole hole; the dynamic friction of each hole section unless given.
             travelling_weight: Weight of top drive and travelling block [N].
             axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.
+            units: Units of the columns: `"si"`, `"field"`, or `"field,hook_load:kN"`; None means the kept units.
         """
         lists = {"modes": modes, "depths": depths, "friction": friction}
         query = {name: ",".join(map(str, values)) for name, values in lists.items() if values is not None}
-        return self.view("torque_drag", **query, travelling_weight=travelling_weight, axial_speed=axial_speed)
+        settings = {"travelling_weight": travelling_weight, "axial_speed": axial_speed, "units": units}
+        return self.view("torque_drag", **query, **settings)
 
     def view(self, name: str, **query: Any) -> Table:
-        """Any table of the point; `query` holds parameters of the HTTP API."""
+        """Any table of the point; `query` holds parameters of the HTTP API, such as `units="field"`."""
         return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))
 
     def save(self, name: str, file: str | Path, **query: Any) -> Path:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from drillsweep.design import Axis, Design, Value, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
@@ -30,6 +30,10 @@ _LOG = logging.getLogger("drillsweep")
 
 _LONG_POLL = 30.0
 """Seconds for which the service holds an answer back until something changes."""
+
+
+Signs = Literal["model", "driller"]
+"""Signs of weight and torque on bit: those of the model, or compression and opposing torque as positive."""
 
 
 class Unchanged(Enum):
@@ -267,17 +271,32 @@ class Sweep(Reported):
         """The points that failed; `Point.error` has the reason."""
         return list(self.points("failed"))
 
-    def table(self) -> Table:
-        """One row a point: its parameters and the scalars of its result."""
-        return Table.from_json(self._client.get_json(f"{self.path}/table"))
+    def table(self, *, units: str | None = None, signs: Signs | None = None) -> Table:
+        """One row a point: its parameters and the scalars of its result.
 
-    def window(self, limits: Mapping[str, float | None] | None = None) -> Table:
+        Args:
+            units: Units of the columns: `"si"`, `"field"`, or `"field,mud_density:kg/m3"`; None means the kept units.
+            signs: `"driller"` has compression of the bit, and torque that opposes clockwise rotation, as positive.
+        """
+        return Table.from_json(self._client.get_json(f"{self.path}/table", {"units": units, "signs": signs}))
+
+    def window(
+        self,
+        limits: Mapping[str, float | str | None] | None = None,
+        *,
+        units: str | None = None,
+        signs: Signs | None = None,
+    ) -> Table:
         """Operating window: parameters, class and finding of each point.
 
         Args:
-            limits: Changes of the service's limits, by column in the column's unit; None removes one.
+            limits: Changes of the service's limits, by column, as numbers in the column's unit or
+                texts with a unit; None removes one.
+            units: Units of the columns, as of `table`.
+            signs: Signs at the bit, as of `table`.
         """
-        return Table.from_json(self._client.get_json(f"{self.path}/window", {"limits": limits_text(limits)}))
+        query = {"limits": limits_text(limits), "units": units, "signs": signs}
+        return Table.from_json(self._client.get_json(f"{self.path}/window", query))
 
     def verification(self) -> Table:
         """Results of verifying some of its points by the reference (`Client.submit(verify=...)`).
@@ -289,9 +308,11 @@ class Sweep(Reported):
         """
         return Table.from_json(self._client.get_json(f"{self.path}/verification"))
 
-    def save_table(self, file: str | Path) -> Path:
-        """Writes the table to a file, in the format of its ending: .csv, .json, .parquet."""
-        return self._client.save(f"{self.path}/table", file, {})
+    def save_table(self, file: str | Path, *, units: str | None = None, signs: Signs | None = None) -> Path:
+        """Writes the table to a file, in the format of its ending: .csv, .json, .parquet; the rest as of `table`."""
+        query = {"units": units, "signs": signs}
+        given = {name: value for name, value in query.items() if value is not None}
+        return self._client.save(f"{self.path}/table", file, given)
 
     def export(self, file: str | Path, tables: Sequence[str] | None = None) -> Path:
         """Writes the whole sweep to one zip archive: request, table, and the tables of every point as Parquet.
@@ -405,7 +426,7 @@ class Sweep(Reported):
         over: Sequence[str] = (),
         resolution: float = 0.02,
         difference: float | None = None,
-        limits: Mapping[str, float | None] | None = None,
+        limits: Mapping[str, float | str | None] | None = None,
         budget: int = 100,
         timeout: float | None = None,
     ) -> Sweep:
@@ -418,7 +439,8 @@ class Sweep(Reported):
             over: One or two of the sweep's parameters, over which points are neighbours; all of them unless given.
             resolution: Longest edge that is not divided, as a part of the range of a parameter.
             difference: For a column: smallest difference that is divided, as a part of the range of all values.
-            limits: For classes: changes of the service's limits, by column in the column's unit; None removes one.
+            limits: For classes: changes of the service's limits, by column, as numbers in the column's unit or
+                texts with a unit; None removes one.
             budget: Largest number of points to add.
             timeout: Longest wait for the points of one round [s]; None is without end.
 

@@ -71,7 +71,12 @@ def texts(values: Iterable[str], pointer: str) -> list[str]:
     return list(values)
 
 
-def limits_text(limits: Mapping[str, float | None] | None) -> str | None:
-    """Limits as a request has them; None if there are none."""
-    changes = {name: "off" if limit is None else repr(float(limit)) for name, limit in (limits or {}).items()}
+def limits_text(limits: Mapping[str, float | str | None] | None) -> str | None:
+    """Limits as a request has them, numbers or texts with their unit; None if there are none."""
+    changes: dict[str, str] = {}
+    for name, limit in (limits or {}).items():
+        if limit is None:
+            changes[name] = "off"
+        else:
+            changes[name] = limit if isinstance(limit, str) else repr(float(limit))
     return ",".join(f"{name}:{limit}" for name, limit in changes.items()) or None

@@ -59,7 +59,8 @@ pub(crate) async fn append(
         count: sweep.counts.total as usize,
     };
     let config = app.config.clone();
-    let expanded = expand_body(&app, &caller, &body, move |mut added: AppendRequest, work, memory| {
+    let expanded = expand_body(&app, &caller, &body, move |added: AppendRequest, work, memory| {
+        let mut added = added.in_model_signs();
         let original: SweepRequest = records::read(&original)?;
         let mut refinement = None;
         if let Some(refine) = added.refinement()? {

@@ -136,7 +136,8 @@ async fn submit<R: DeserializeOwned + Into<SweepRequest>>(
     let expanded = expand_body(&app, caller, &body, {
         let caller = caller.clone();
         move |request: R, work, memory| {
-            let mut request: SweepRequest = request.into();
+            let request: SweepRequest = request.into();
+            let mut request = request.in_model_signs();
             request.owner = caller.submits_as(request.owner)?;
             if let Err(needed) = make_room(work, memory, &request) {
                 return Ok(Err(needed));

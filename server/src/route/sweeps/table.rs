@@ -4,10 +4,10 @@ use ::drillsweep_chart as chart;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::ColumnList;
 use drillsweep_api::judgement::LimitChanges;
 use drillsweep_api::view::points::PointsTable;
-use drillsweep_quantity::Name;
+use drillsweep_api::{ColumnList, Signs};
+use drillsweep_quantity::{Name, UnitChoice};
 use drillsweep_store::WorkState;
 use drillsweep_table::tables;
 use indexmap::IndexSet;
@@ -17,7 +17,7 @@ use tokio::runtime::Handle;
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
 use crate::answer::extract::{Path, Query, value};
-use crate::answer::format::{Answer, Format, PictureFormat};
+use crate::answer::format::{Answer, Form, PictureFormat};
 use crate::answer::json::Json;
 use crate::answer::stored::Stored;
 use crate::answer::{recordings, records};
@@ -33,19 +33,29 @@ pub(crate) struct SweepTableQuery {
     /// Format of the table, or of its picture; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
+    /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, or a quantity at all nodes,
+    /// separated by commas. Attributes follow; CSV then has units in its first line. Absent means the kept units, and SI with prefixes for a picture.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,mud_density:kg/m3")]
+    units: Option<UnitChoice>,
     /// Only these columns, separated by commas; of a picture, the columns that it shows.
     #[serde(default, deserialize_with = "value::names")]
     #[param(value_type = Option<String>)]
     fields: Option<Vec<String>>,
-    /// Changes of the service's limits by which `class` is judged: `COLUMN:VALUE` in the column's unit or `COLUMN:off`, separated by commas.
+    /// Changes of the service's limits by which `class` is judged: `COLUMN:VALUE` in the column's unit or with a unit, or `COLUMN:off`, separated by commas.
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>)]
     limits: LimitChanges,
+    /// Signs of `operation.weight_on_bit` and `operation.torque_on_bit`, also in `slice`: with `driller` compression, and torque that opposes clockwise
+    /// rotation, are positive.
+    #[serde(default)]
+    #[param(inline)]
+    signs: Signs,
     /// For a map: placement of the values of its parameters; absent means `even`.
     #[param(inline)]
     spacing: Option<MapSpacing>,
-    /// For a picture: fixed parameters, each with one of its values in the units of the table, separated by commas:
-    /// `mud.density:1200,operation.weight_on_bit:-50000`. A map spans the first two of the others; further ones are fixed at their first
+    /// For a picture: fixed parameters, each with one of its values, in its kept unit or with a unit, separated by commas:
+    /// `mud.density:1200,operation.weight_on_bit:-50000`, `mud.density:10 ppg`. A map spans the first two of the others; further ones are fixed at their first
     /// value, which the picture states.
     #[serde(default, deserialize_with = "value::assignments")]
     #[param(value_type = Option<String>)]
@@ -90,16 +100,18 @@ impl From<MapSpacing> for chart::Spacing {
 pub(crate) async fn table(
     State(app): State<App>,
     Path(id): Path<String>,
-    Query(SweepTableQuery { format, fields, limits, spacing, slice }): Query<SweepTableQuery>,
+    Query(SweepTableQuery { format, units, fields, limits, signs, spacing, slice }): Query<SweepTableQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let format = Format::choose(format, &headers)?;
+    let form = Form::choose(format, units, &headers)?;
+    let format = form.format;
     let limits = app.config.operating_limits.with(&limits);
     let spacing = spacing.unwrap_or_default();
     let slice = slice.unwrap_or_default();
     let Some(sweep) = app.store.sweep(&id).await? else { return Err(records::no_such_sweep(&id)) };
     // Every change of a point or a reference run raises the version.
-    let key = Tag::of(format, &("map", &id, sweep.version, &sweep.name, &fields, &limits, spacing, &slice));
+    let key =
+        Tag::of(&form, &("map", &id, sweep.version, &sweep.name, &fields, &limits, signs, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
     let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
     let verified = Verified::load(&app.store, &id).await?;
@@ -127,13 +139,14 @@ pub(crate) async fn table(
             // Without depths the picture is still useful.
             view.places = recordings::depths(&statics, &nodes).unwrap_or_default();
         }
-        let mut table = points.finish();
+        let mut table = signs.of_table(points.finish());
         let findings = &verified.findings;
         if !findings.warnings.is_empty() {
             table = table.attribute("warnings", findings.warnings.clone());
         }
         let (fields, title) = (fields.as_deref(), sweep.name.as_deref().unwrap_or_default());
-        Answer::of_table_or_picture(table, fields, format, &format!("sweep-{id}"), None, |table| {
+        Answer::of_table_or_picture(table, fields, form, &format!("sweep-{id}"), None, |table, units| {
+            view.units = units.clone();
             chart::sweep(table, &parameters, fields, findings, title, &view)
         })
     })

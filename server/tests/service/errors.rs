@@ -170,7 +170,7 @@ async fn problems_of_malformed_bodies_name_no_types() {
     let bench = Bench::new().await;
     for (body, pointer, words) in [
         (
-            json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": ["fast"]}}}),
+            json!({"preset": "paper-200m", "axes": {"flow_rate": {"values": [true]}}}),
             "/axes/flow_rate/values/0",
             "number",
         ),

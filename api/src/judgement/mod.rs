@@ -90,7 +90,7 @@ pub struct Finding {
 
 impl Judgement {
     /// Judgement of a finished point by its row.
-    pub fn of_row(row: &Map<String, Value>, limits: &OperatingLimits) -> Self {
+    pub fn of_row(row: &impl Scalars, limits: &OperatingLimits) -> Self {
         let row = Row(row);
         let found = [
             row.buckling(limits),
@@ -129,24 +129,46 @@ impl Judgement {
 /// Kinds of instability that push a string aside.
 const BUCKLING: [&str; 3] = ["buckling", "torque_buckling", "flow_divergence"];
 
-/// Scalars of a point by column.
+/// Scalars of a point by column: of its summary, or of its row in a table.
+pub trait Scalars {
+    /// Number, in the column's unit; absent of a missing value or a text.
+    fn number(&self, column: &str) -> Option<f64>;
+
+    /// Text; absent of a missing value or a number.
+    fn text(&self, column: &str) -> Option<&str>;
+
+    /// Value of any kind; absent of a missing one.
+    fn value(&self, column: &str) -> Option<Value>;
+}
+
+impl Scalars for Map<String, Value> {
+    fn number(&self, column: &str) -> Option<f64> {
+        self.get(column)?.as_f64()
+    }
+
+    fn text(&self, column: &str) -> Option<&str> {
+        self.get(column)?.as_str()
+    }
+
+    fn value(&self, column: &str) -> Option<Value> {
+        self.get(column).filter(|value| !value.is_null()).cloned()
+    }
+}
+
 #[derive(Clone, Copy)]
-struct Row<'a>(&'a Map<String, Value>);
+struct Row<'a>(&'a dyn Scalars);
 
 impl<'a> Row<'a> {
     fn number(self, quantity: &Quantity) -> Option<f64> {
-        self.0.get(quantity.name)?.as_f64()
+        self.0.number(quantity.name)
     }
 
     fn text(self, quantity: &Quantity) -> Option<&'a str> {
-        self.0.get(quantity.name)?.as_str()
+        self.0.text(quantity.name)
     }
 
     fn finding(self, class: MotionClass, sentence: String, columns: &[&Quantity]) -> Finding {
-        let value = |quantity: &&Quantity| {
-            let value = self.0.get(quantity.name).filter(|value| !value.is_null())?;
-            Some((quantity.name.to_owned(), value.clone()))
-        };
+        let value = |quantity: &&Quantity| Some((quantity.name.to_owned(), self.0.value(quantity.name)?));
         Finding { class, sentence, evidence: columns.iter().filter_map(value).collect() }
     }
 
@@ -277,12 +299,12 @@ impl<'a> Row<'a> {
     /// Columns above their limits, but for those that classes have of their own.
     fn over_limits(self, limits: &OperatingLimits) -> Vec<Finding> {
         let exceeded = |(column, limit): (&str, f64)| {
-            let value = self.0.get(column)?.as_f64().filter(|value| value.abs() > limit)?;
+            let value = self.0.number(column).filter(|value| value.abs() > limit)?;
             let name = Name::parse(column)?;
             let shown = name.units().map_or(Unit { symbol: "", size: 1.0 }, |units| units.shown);
             let symbol = if shown.symbol == "1" { String::new() } else { format!(" {}", shown.symbol) };
             let depth_column = format!("{column}_depth");
-            let depth = self.0.get(&depth_column).and_then(Value::as_f64);
+            let depth = self.0.number(&depth_column);
             let place = depth.map_or_else(String::new, |depth| format!(" at {depth:.1} m"));
             let sentence = format!(
                 "Over limit: {name}{place} is {}{symbol}, above {}{symbol}",

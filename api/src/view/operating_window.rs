@@ -5,9 +5,9 @@ use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::points::PointSummary;
+use super::points::{PointSummary, PointsTable};
 use super::worst::WorstValues;
-use crate::judgement::{Judgement, MotionClass, OperatingLimits};
+use crate::judgement::{Judgement, MotionClass, OperatingLimits, Scalars};
 
 /// Operating window as it is put together point by point: a row a point with its parameters, its class by limits, whether the class is uncertain, and
 /// its finding in words. Points without a result have no class.
@@ -36,25 +36,51 @@ impl OperatingWindow {
         }
     }
 
+    /// Window of a table by limits.
+    pub fn of_table(points: &PointsTable, limits: OperatingLimits) -> Self {
+        let mut window = Self::new(limits);
+        for point in points.rows() {
+            window.add(point.ordinal(), point.parameters(), point.error(), point.scalars());
+        }
+        window
+    }
+
     /// Adds a point.
     ///
     /// # Errors
     /// Its summary is no JSON object.
     pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
+        let summary: Option<Map<String, Value>> =
+            point.summary.as_deref().map(serde_json::from_str).transpose()?;
+        let error = point.error.as_ref().map(|error| error.reason.as_str());
+        let parameters = point.parameters.iter().map(|(name, value)| (name.as_str(), *value));
+        self.add(point.ordinal, parameters, error, summary.as_ref());
+        Ok(())
+    }
+
+    fn add<'p>(
+        &mut self,
+        ordinal: u32,
+        parameters: impl Iterator<Item = (&'p str, f64)>,
+        error: Option<&str>,
+        scalars: Option<&impl Scalars>,
+    ) {
         let row = self.ordinals.len();
-        self.ordinals.push(Some(point.ordinal.into()));
-        for (name, value) in point.parameters {
-            let values = self.parameters.entry(name).or_default();
+        self.ordinals.push(Some(ordinal.into()));
+        for (name, value) in parameters {
+            let values = match self.parameters.get_mut(name) {
+                Some(values) => values,
+                None => self.parameters.entry(name.to_owned()).or_default(),
+            };
             values.resize(row, f64::NAN);
             values.push(value);
         }
-        let (judgement, uncertain) = match (&point.error, &point.summary) {
-            (Some(error), _) => (Some(Judgement::of_failure(&error.reason, &self.limits)), None),
-            (None, Some(summary)) => {
-                let row: Map<String, Value> = serde_json::from_str(summary)?;
-                let judgement = Judgement::of_row(&row, &self.limits);
-                let uncertain = uncertainty(&row, &judgement);
-                self.worst.push(point.ordinal, &row, judgement.class);
+        let (judgement, uncertain) = match (error, scalars) {
+            (Some(reason), _) => (Some(Judgement::of_failure(reason, &self.limits)), None),
+            (None, Some(scalars)) => {
+                let judgement = Judgement::of_row(scalars, &self.limits);
+                let uncertain = uncertainty(scalars, &judgement);
+                self.worst.push(ordinal, scalars, judgement.class);
                 (Some(judgement), uncertain)
             }
             (None, None) => (None, None),
@@ -62,7 +88,6 @@ impl OperatingWindow {
         self.classes.push(judgement.as_ref().map(|judgement| judgement.class));
         self.sentences.push(judgement.map(|judgement| judgement.sentence));
         self.uncertain.push(uncertain);
-        Ok(())
     }
 
     /// The names of the parameters so far.
@@ -102,15 +127,14 @@ impl OperatingWindow {
 }
 
 /// Reason for which the class of a point is uncertain: its statistics have not settled, or its estimated error reaches across a limit; absent otherwise.
-fn uncertainty(row: &Map<String, Value>, judgement: &Judgement) -> Option<String> {
-    let text = |quantity: &str| row.get(quantity)?.as_str();
-    let number = |quantity: &str| row.get(quantity)?.as_f64();
-    if text(MOTION_REGIME.name) == Some("not_settled") {
+fn uncertainty(row: &impl Scalars, judgement: &Judgement) -> Option<String> {
+    if row.text(MOTION_REGIME.name) == Some("not_settled") {
         return Some("not settled".to_owned());
     }
-    let (kind, error) = number(WHOLE_ERROR.name)
+    let (kind, error) = row
+        .number(WHOLE_ERROR.name)
         .map(|error| ("estimated", error))
-        .or_else(|| number(PROMISED_ERROR.name).map(|error| ("promised", error)))?;
+        .or_else(|| row.number(PROMISED_ERROR.name).map(|error| ("promised", error)))?;
     let other = [1.0 + error, 1.0 / (1.0 + error)]
         .map(|factor| Judgement::of_row(row, &judgement.limits.scaled(factor)).class)
         .into_iter()
@@ -142,6 +166,7 @@ mod tests {
     #[test]
     fn classes_near_a_limit_are_uncertain_by_the_estimated_error() {
         let mut window = OperatingWindow::new(OperatingLimits::default());
+        let mut points = PointsTable::default();
         for (ordinal, severity, error) in [
             (1, Some(0.5), 0.02),
             (2, Some(0.99), 0.02),
@@ -150,8 +175,10 @@ mod tests {
             (5, None, 0.0),
         ] {
             window.push(point(ordinal, severity, error)).unwrap();
+            points.push(point(ordinal, severity, error)).unwrap();
         }
         let table = window.finish();
+        assert_eq!(OperatingWindow::of_table(&points, OperatingLimits::default()).finish(), table);
         let texts = |quantity: &str| match &table.columns[quantity] {
             Column::Text(texts) => {
                 texts.iter().map(|text| text.as_deref().unwrap_or("-").to_owned()).collect::<Vec<_>>()

@@ -9,9 +9,9 @@ use drillsweep_table::{Column, Table};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use crate::judgement::{Judgement, MotionClass, OperatingLimits};
+use crate::judgement::{Judgement, OperatingLimits, Scalars};
 use crate::point::PointState;
 
 /// Data of a point that the table needs.
@@ -34,49 +34,34 @@ pub struct PointSummary {
 /// The table of a sweep as it is put together point by point, so that in addition only the current point is in memory. Summaries go into
 /// their columns as they are parsed: of a hundred thousand points they are hundreds of megabytes.
 ///
-/// One row a point: `ordinal`, `state`, its `class` if it is [judged](PointsTable::judged), its parameters, the fields of its summary, of points that are verified the bias of each
+/// One row a point: `ordinal`, `state`, its [class](PointsTable::classes) if the table is finished with it, its parameters, the fields of its summary, of points that are verified the bias of each
 /// statistic NAME against the reference as `bias_NAME`, and the `error` with its `error_time` \[s\] and `error_node`.
 ///
 /// Columns are the union over all points, in the order in which they are first met; a point that has no
 /// value has `null` there. Fields of the summary that are objects become columns named
 /// `outer.inner`; lists become JSON text.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct PointsTable {
     ordinals: Vec<Option<i64>>,
     states: Vec<Option<String>>,
     parameters: IndexMap<String, Vec<f64>>,
     /// Columns of the summaries' fields, as far as these have a value; none if no point has one yet.
     fields: IndexMap<String, Option<Column>>,
-    /// The fields whose values are kept; none if all are.
+    /// Fields whose values are kept; none if all are.
     kept: Option<HashSet<String>>,
-    /// Limits that classes are judged by; absent if they are not judged.
-    limits: Option<OperatingLimits>,
-    classes: Vec<Option<String>>,
+    has_summary: Vec<bool>,
     biases: IndexMap<String, Vec<f64>>,
     errors: Vec<Option<String>>,
     error_times: Vec<f64>,
     error_nodes: Vec<Option<i64>>,
+    /// Number of rows that the columns take without growing.
+    expected: usize,
 }
 
 impl PointsTable {
-    /// A table that keeps, of the fields of summaries, the values of these alone; the columns of the others stay empty, of the kind that
-    /// holds their values.
-    pub fn keeping<'a>(fields: impl IntoIterator<Item = &'a str>) -> Self {
-        let kept = fields.into_iter().map(str::to_owned).collect();
-        PointsTable { kept: Some(kept), ..PointsTable::default() }
-    }
-
-    /// The same with the class of each point by limits.
-    #[must_use]
-    pub fn judged(mut self, limits: OperatingLimits) -> Self {
-        self.limits = Some(limits);
-        self
-    }
-
-    /// Limits by which classes are judged; absent unless the column is kept.
-    fn judging(&self) -> Option<&OperatingLimits> {
-        let is_kept = self.kept.as_ref().is_none_or(|kept| kept.contains(columns::CLASS.name));
-        self.limits.as_ref().filter(|_| is_kept)
+    /// Table without a row, whose columns take as many rows without growing.
+    pub fn for_rows(rows: usize) -> Self {
+        Self { expected: rows, ..Self::default() }
     }
 
     /// Adds the row of a point.
@@ -85,30 +70,87 @@ impl PointsTable {
     /// Its summary is no JSON object.
     pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
         let row = self.ordinals.len();
-        // A class follows from the whole summary, which is parsed once: its columns are then taken from the parsed object.
-        let summary = point.summary.as_deref().filter(|_| self.judging().is_some());
-        let parsed: Option<Map<String, Value>> = summary.map(serde_json::from_str).transpose()?;
-        let class = self.judging().and_then(|limits| class(&point, parsed.as_ref(), limits));
-        self.classes.push(class.map(|class| class.name().to_owned()));
         self.ordinals.push(Some(point.ordinal.into()));
         self.states.push(Some(point.state.to_string()));
         for (name, value) in point.parameters {
             put(&mut self.parameters, name, row, value);
         }
-        let mut fields = Fields { columns: &mut self.fields, kept: self.kept.as_ref(), row };
-        let object = Object { fields: &mut fields, path: "" };
-        match (&parsed, &point.summary) {
-            (Some(parsed), _) => object.deserialize(parsed)?,
-            (None, Some(summary)) => object.deserialize(&mut serde_json::Deserializer::from_str(summary))?,
-            (None, None) => {}
+        if let Some(summary) = &point.summary {
+            let mut fields = Fields { columns: &mut self.fields, next: 0, row, expected: self.expected };
+            Object { fields: &mut fields, path: "" }
+                .deserialize(&mut serde_json::Deserializer::from_str(summary))?;
         }
         for (name, value) in point.biases {
             put(&mut self.biases, name, row, value);
         }
+        self.has_summary.push(point.summary.is_some());
         self.error_times.push(point.error.as_ref().and_then(|error| error.time).unwrap_or(f64::NAN));
         self.error_nodes.push(point.error.as_ref().and_then(|error| error.node).map(i64::from));
         self.errors.push(point.error.map(|error| error.reason));
         Ok(())
+    }
+
+    /// The table with the values of these fields of summaries alone; columns of the others stay empty, of the same kind.
+    #[must_use]
+    pub fn keeping(&self, names: &[String]) -> Self {
+        let kept: HashSet<String> = names.iter().cloned().collect();
+        let field = |(name, column): (&String, &Option<Column>)| {
+            let column = column.as_ref().map(|column| match kept.contains(name) {
+                true => column.clone(),
+                false => column.rows(0..0),
+            });
+            (name.clone(), column)
+        };
+        Self {
+            ordinals: self.ordinals.clone(),
+            states: self.states.clone(),
+            parameters: self.parameters.clone(),
+            fields: self.fields.iter().map(field).collect(),
+            has_summary: self.has_summary.clone(),
+            biases: self.biases.clone(),
+            errors: self.errors.clone(),
+            error_times: self.error_times.clone(),
+            error_nodes: self.error_nodes.clone(),
+            kept: Some(kept),
+            expected: self.expected,
+        }
+    }
+
+    /// Class of each point by limits; absent without a result.
+    pub fn classes(&self, limits: &OperatingLimits) -> Vec<Option<String>> {
+        let class = |row: PointRow<'_>| {
+            let judgement = match row.error() {
+                Some(reason) => Judgement::of_failure(reason, limits),
+                None => Judgement::of_row(row.scalars()?, limits),
+            };
+            Some(judgement.class.name().to_owned())
+        };
+        self.rows().map(class).collect()
+    }
+
+    /// Rows in order.
+    pub fn rows(&self) -> impl Iterator<Item = PointRow<'_>> {
+        (0..self.ordinals.len()).map(|row| PointRow { table: self, row })
+    }
+
+    /// Memory of the values \[bytes\].
+    pub fn memory(&self) -> usize {
+        let texts = |values: &[Option<String>]| {
+            size_of_val(values)
+                + values.iter().flatten().map(|text| text.len() + MEMORY_OF_ALLOCATION).sum::<usize>()
+        };
+        let field = |column: &Column| match column {
+            Column::Integer(values) => size_of_val(values.as_slice()),
+            Column::Number(values) => size_of_val(values.as_slice()),
+            Column::Single(values) => size_of_val(values.as_slice()),
+            Column::Text(values) => texts(values),
+        };
+        let numbers = self.parameters.values().chain(self.biases.values());
+        numbers.map(|values| size_of_val(values.as_slice())).sum::<usize>()
+            + self.fields.values().flatten().map(field).sum::<usize>()
+            + texts(&self.states)
+            + texts(&self.errors)
+            + self.ordinals.len() * (2 * size_of::<Option<i64>>() + size_of::<f64>())
     }
 
     /// The names of the parameters so far.
@@ -116,14 +158,14 @@ impl PointsTable {
         self.parameters.keys().map(String::as_str)
     }
 
-    /// The table of all rows.
-    pub fn finish(self) -> Table {
+    /// The table of all rows, with the class of each point if there are classes.
+    pub fn finish(self, classes: Option<Vec<Option<String>>>) -> Table {
         let rows = self.ordinals.len();
         let mut table = Table::default()
             .with(&columns::ORDINAL, Column::Integer(self.ordinals))
             .with(&columns::STATE, Column::Text(self.states));
-        if self.limits.is_some() {
-            table.push(&columns::CLASS, Column::Text(self.classes));
+        if let Some(classes) = classes {
+            table.push(&columns::CLASS, Column::Text(classes));
         }
         for (name, mut values) in self.parameters {
             values.resize(rows, f64::NAN);
@@ -150,17 +192,63 @@ impl PointsTable {
     }
 }
 
-/// Class of a point with this summary by the limits; absent without a result.
-fn class(
-    point: &PointSummary,
-    summary: Option<&Map<String, Value>>,
-    limits: &OperatingLimits,
-) -> Option<MotionClass> {
-    let judgement = match &point.error {
-        Some(error) => Judgement::of_failure(&error.reason, limits),
-        None => Judgement::of_row(summary?, limits),
-    };
-    Some(judgement.class)
+/// Overhead of an allocation \[bytes\], of common allocators.
+const MEMORY_OF_ALLOCATION: usize = 16;
+
+/// Row of a point.
+#[derive(Debug, Clone, Copy)]
+pub struct PointRow<'t> {
+    table: &'t PointsTable,
+    row: usize,
+}
+
+impl<'t> PointRow<'t> {
+    /// Number of the point in its sweep, from 1.
+    pub fn ordinal(&self) -> u32 {
+        self.table.ordinals[self.row].and_then(|ordinal| ordinal.try_into().ok()).unwrap_or_default()
+    }
+
+    /// Parameters of the point, by axis name.
+    pub fn parameters(&self) -> impl Iterator<Item = (&'t str, f64)> {
+        let row = self.row;
+        let values =
+            self.table.parameters.iter().filter_map(move |(name, values)| Some((name, *values.get(row)?)));
+        values.filter(|(_, value)| !value.is_nan()).map(|(name, value)| (name.as_str(), value))
+    }
+
+    /// Reason of its failure, if it failed.
+    pub fn error(&self) -> Option<&'t str> {
+        self.table.errors[self.row].as_deref()
+    }
+
+    /// Its scalar results, if there are any.
+    pub fn scalars(&self) -> Option<&impl Scalars> {
+        self.table.has_summary[self.row].then_some(self)
+    }
+}
+
+impl Scalars for PointRow<'_> {
+    fn number(&self, column: &str) -> Option<f64> {
+        match self.table.fields.get(column)?.as_ref()? {
+            Column::Integer(values) => values.get(self.row).copied().flatten().map(|value| value as f64),
+            Column::Number(values) => values.get(self.row).copied().filter(|value| value.is_finite()),
+            Column::Single(values) => {
+                values.get(self.row).map(|value| f64::from(*value)).filter(|value| value.is_finite())
+            }
+            Column::Text(_) => None,
+        }
+    }
+
+    fn text(&self, column: &str) -> Option<&str> {
+        match self.table.fields.get(column)?.as_ref()? {
+            Column::Text(values) => values.get(self.row)?.as_deref(),
+            _ => None,
+        }
+    }
+
+    fn value(&self, column: &str) -> Option<Value> {
+        self.text(column).map(Value::from).or_else(|| self.number(column).map(Value::from))
+    }
 }
 
 fn put(columns: &mut IndexMap<String, Vec<f64>>, name: String, row: usize, value: f64) {
@@ -170,8 +258,8 @@ fn put(columns: &mut IndexMap<String, Vec<f64>>, name: String, row: usize, value
 }
 
 /// Puts a value into its row of a column, which becomes the narrowest kind that holds all: whole numbers, numbers, texts.
-fn put_field(field: &mut Option<Column>, row: usize, value: Value) {
-    let Some(column) = widened(field, &value) else { return };
+fn put_field(field: &mut Option<Column>, row: usize, expected: usize, value: Value) {
+    let Some(column) = widened(field, &value, expected) else { return };
     fill(column, row);
     match column {
         Column::Integer(values) => values.push(value.as_i64()),
@@ -185,12 +273,14 @@ fn put_field(field: &mut Option<Column>, row: usize, value: Value) {
 }
 
 /// The column as one that can hold a value; none of no value.
-fn widened<'c>(field: &'c mut Option<Column>, value: &Value) -> Option<&'c mut Column> {
+fn widened<'c>(field: &'c mut Option<Column>, value: &Value, expected: usize) -> Option<&'c mut Column> {
     let wider = match (field.as_mut(), value) {
         (_, Value::Null) => return None,
-        (None, Value::Number(number)) if number.is_i64() => Some(Column::Integer(Vec::new())),
-        (None, Value::Number(_)) => Some(Column::Number(Vec::new())),
-        (None, _) => Some(Column::Text(Vec::new())),
+        (None, Value::Number(number)) if number.is_i64() => {
+            Some(Column::Integer(Vec::with_capacity(expected)))
+        }
+        (None, Value::Number(_)) => Some(Column::Number(Vec::with_capacity(expected))),
+        (None, _) => Some(Column::Text(Vec::with_capacity(expected))),
         (Some(column), Value::Number(number)) if matches!(column, Column::Integer(_)) && !number.is_i64() => {
             Some(Column::Number(column.numbers().unwrap_or_default()))
         }
@@ -227,20 +317,24 @@ fn texts(column: &mut Column) -> Vec<Option<String>> {
 /// Columns of the fields of a point's summary.
 struct Fields<'t> {
     columns: &'t mut IndexMap<String, Option<Column>>,
-    kept: Option<&'t HashSet<String>>,
+    /// Index of the column after the one that was put last: summaries of a sweep have the same fields in the same order.
+    next: usize,
     row: usize,
+    expected: usize,
 }
 
 impl Fields<'_> {
     fn put(&mut self, name: &str, value: Value) {
-        if !self.columns.contains_key(name) {
-            self.columns.insert(name.to_owned(), None);
-        }
-        let Some(field) = self.columns.get_mut(name) else { return };
-        if self.kept.is_none_or(|kept| kept.contains(name)) {
-            put_field(field, self.row, value);
-        } else {
-            widened(field, &value);
+        let index = match self.columns.get_index(self.next) {
+            Some((known, _)) if known == name => self.next,
+            _ => match self.columns.get_index_of(name) {
+                Some(index) => index,
+                None => self.columns.insert_full(name.to_owned(), None).0,
+            },
+        };
+        self.next = index + 1;
+        if let Some((_, field)) = self.columns.get_index_mut(index) {
+            put_field(field, self.row, self.expected, value);
         }
     }
 }
@@ -350,12 +444,42 @@ impl<'de> Visitor<'de> for Field<'_, '_> {
 mod tests {
     use super::*;
     use drillsweep_scenario::FailureClass;
-    use serde_json::json;
+    use serde_json::{Map, json};
 
-    fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
+    fn of_points(points: impl IntoIterator<Item = PointSummary>) -> PointsTable {
         let mut table = PointsTable::default();
         points.into_iter().for_each(|point| table.push(point).unwrap());
-        table.finish()
+        table
+    }
+
+    fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
+        of_points(points).finish(None)
+    }
+
+    #[test]
+    fn classes_of_a_table_are_those_of_its_summaries() {
+        let limits = OperatingLimits::default();
+        let summaries = [
+            json!({"motion_regime": "regular", "bit_stick_slip_severity": 1, "bit_speed_min": 0.0}),
+            json!({"motion_regime": "not_settled", "bit_stick_slip_severity": null, "halves_differ": 0.2}),
+            json!({"motion_regime": "regular", "instability": "buckling", "largest_lateral_acceleration_rms": 1.5}),
+            json!({"largest_lateral_acceleration_rms": 0.1, "motion_regime": "regular"}),
+            json!({}),
+        ];
+        let points = summaries.iter().zip(1..).map(|(summary, ordinal)| PointSummary {
+            ordinal,
+            state: PointState::Succeeded,
+            parameters: IndexMap::new(),
+            summary: Some(summary.to_string()),
+            biases: IndexMap::new(),
+            error: None,
+        });
+        let class = |summary: &Value| {
+            Some(Judgement::of_row(summary.as_object().unwrap(), &limits).class.name().to_owned())
+        };
+        let expected: Vec<Option<String>> = summaries.iter().map(class).collect();
+        assert_eq!(of_points(points).classes(&limits), expected);
+        assert_eq!(expected.iter().collect::<HashSet<_>>().len(), 5, "of five kinds: {expected:?}");
     }
 
     #[test]
@@ -387,9 +511,7 @@ mod tests {
         );
 
         // A table that keeps some of them has the same columns, empty but for those.
-        let mut part = PointsTable::keeping(["words", "none"]);
-        points.into_iter().for_each(|point| part.push(point).unwrap());
-        let part = part.finish();
+        let part = of_points(points).keeping(&["words".to_owned(), "none".to_owned()]).finish(None);
         assert_eq!(part.without_rows().columns, table.without_rows().columns);
         assert!(part.columns.keys().eq(table.columns.keys()), "in the same order");
         assert_eq!(part.columns["words"], table.columns["words"]);

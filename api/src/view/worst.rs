@@ -2,9 +2,8 @@
 
 use drillsweep_quantity::Quantity;
 use drillsweep_quantity::columns::*;
-use serde_json::{Map, Value};
 
-use crate::judgement::MotionClass;
+use crate::judgement::{MotionClass, Scalars};
 
 /// Loads whose largest values are reported. The depth of NAME is the column `NAME_depth`.
 static LOADS: [&Quantity; 13] = [
@@ -49,14 +48,14 @@ pub struct WorstValues {
 
 impl WorstValues {
     /// Adds a finished point with its class by limits.
-    pub fn push(&mut self, ordinal: u32, row: &Map<String, Value>, class: MotionClass) {
+    pub fn push(&mut self, ordinal: u32, row: &impl Scalars, class: MotionClass) {
         for (worst, quantity) in self.loads.iter_mut().zip(LOADS) {
             raise(worst, quantity, ordinal, row);
         }
         for (worst, quantity) in self.errors.iter_mut().zip(ERRORS) {
             raise(worst, quantity, ordinal, row);
         }
-        let size = row.get(LARGEST_LATERAL_ACCELERATION_RMS.name).and_then(Value::as_f64).unwrap_or(0.0);
+        let size = row.number(LARGEST_LATERAL_ACCELERATION_RMS.name).unwrap_or(0.0);
         let is_worse = |(worst, largest, _): (MotionClass, f64, u32)| {
             class < worst || (class == worst && size > largest)
         };
@@ -81,23 +80,17 @@ impl WorstValues {
     }
 }
 
-fn raise(
-    worst: &mut Option<WorstValue>,
-    quantity: &'static Quantity,
-    ordinal: u32,
-    row: &Map<String, Value>,
-) {
-    let number = |name: &str| row.get(name).and_then(Value::as_f64);
-    let Some(value) = number(quantity.name) else { return };
+fn raise(worst: &mut Option<WorstValue>, quantity: &'static Quantity, ordinal: u32, row: &impl Scalars) {
+    let Some(value) = row.number(quantity.name) else { return };
     if worst.is_none_or(|worst| value.abs() > worst.value.abs()) {
-        let depth = number(&format!("{}_depth", quantity.name));
+        let depth = row.number(&format!("{}_depth", quantity.name));
         *worst = Some(WorstValue { quantity, value, depth, ordinal });
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
 

@@ -10,6 +10,7 @@ pub(crate) mod pictures;
 pub(crate) mod readiness;
 pub(crate) mod retention;
 pub(crate) mod shares;
+pub(crate) mod tables;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,6 +37,7 @@ use crate::app::pictures::Pictures;
 use crate::app::readiness::Readiness;
 use crate::app::retention::RetentionConfig;
 use crate::app::shares::Shares;
+use crate::app::tables::Tables;
 use crate::guard::invalid_tokens::InvalidTokens;
 use crate::listen::ConnectionLimits;
 
@@ -117,6 +119,7 @@ pub(crate) struct App {
     /// Addresses that send invalid tokens.
     pub(crate) invalid_tokens: Arc<InvalidTokens>,
     pub(crate) columns: Arc<KnownColumns>,
+    pub(crate) tables: Arc<Tables>,
     pictures: Arc<Pictures>,
     /// Memory for views of results \[KiB\].
     views: Arc<Lane>,
@@ -147,6 +150,7 @@ impl App {
             polls: Shares::new("long polls", HELD_ANSWERS, LIMITS.held_answers_per_owner),
             invalid_tokens: Arc::new(invalid_tokens),
             columns: Arc::default(),
+            tables: Arc::new(Tables::new()),
             pictures: Arc::new(Pictures::new()),
             views: lane(config.large_answer_bytes / KIB),
             small_views: lane(config.large_answer_bytes / 2 / KIB),

@@ -6,7 +6,6 @@ use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::judgement::OperatingLimits;
-use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{ExportManifest, MissingFile};
 use drillsweep_store::{Artifact, Store, WorkKey};
 use drillsweep_table::csv;
@@ -73,6 +72,7 @@ pub(crate) async fn export(
     let archive = Archive {
         store: app.store,
         id: id.clone(),
+        points: total,
         wanted: query.artifacts,
         limits: app.config.operating_limits.clone(),
         handle: Handle::current(),
@@ -99,6 +99,7 @@ type Zip<'s> = ZipWriter<StreamWriter<&'s mut Sink>>;
 struct Archive {
     store: Store,
     id: String,
+    points: u64,
     wanted: Option<Vec<String>>,
     limits: OperatingLimits,
     handle: Handle,
@@ -130,11 +131,9 @@ impl Archive {
     }
 
     fn write_table(&self, verified: &Verified, zip: &mut Zip<'_>) -> io::Result<()> {
-        let table = verified
-            .points(PointsTable::default().judged(self.limits.clone()), &self.store, &self.id, &self.handle)
-            .map_err(failed)?
-            .finish();
-        csv::write_to(&table, zip).map_err(io::Error::other)
+        let points = verified.points(&self.store, &self.id, self.points, &self.handle).map_err(failed)?;
+        let classes = points.classes(&self.limits);
+        csv::write_to(&points.finish(Some(classes)), zip).map_err(io::Error::other)
     }
 
     fn write_points(&self, zip: &mut Zip<'_>, manifest: &mut ExportManifest) -> io::Result<()> {

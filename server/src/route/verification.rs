@@ -23,8 +23,8 @@ use crate::route::results::TableQuery;
 /// Memory of a point in the table of its sweep, without its summary \[bytes\].
 const MEMORY_OF_POINT: u64 = 256;
 
-/// Memory for the table of a sweep \[bytes\], from the summary of one point. A field takes eight bytes in a column, twice that while the
-/// column grows, and with its name at least forty in the summary's JSON.
+/// Memory for the table of a sweep \[bytes\], from the summary of one point. A field takes eight bytes in a column, sixteen with the
+/// cached column that it is a copy of, and with its name at least forty in the summary's JSON.
 pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result<u64> {
     let one = app.store.points(id, &[WorkState::Done], 0, 1).await?;
     let summary = one.first().and_then(|point| point.summary_json.as_deref()).map_or(0, str::len) as u64;
@@ -58,14 +58,15 @@ impl Verified {
         .await
     }
 
-    /// Adds the points of the sweep, with biases of verified ones, to `table`, which may keep only some columns. Blocks.
+    /// Table of `points` points of the sweep, with biases of verified ones. Blocks.
     pub(crate) fn points(
         &self,
-        mut table: PointsTable,
         store: &Store,
         id: &str,
+        points: u64,
         runtime: &Handle,
     ) -> Result<PointsTable> {
+        let mut table = PointsTable::for_rows(usize::try_from(points).unwrap_or_default());
         self.each_point(store, id, runtime, |point| table.push(point))?;
         Ok(table)
     }
@@ -158,9 +159,7 @@ mod tests {
         let store = Store::open(&config).await.expect("a store");
         let runtime = Handle::current();
         // The state that the page after the deletion finds.
-        let read = move || {
-            Verified::default().points(PointsTable::default(), &store, "deleted", &runtime).map(|_| ())
-        };
+        let read = move || Verified::default().points(&store, "deleted", 0, &runtime).map(|_| ());
         let problem = blocking(read).await.map_err(Error::into_problem).expect_err("no table");
         assert_eq!(problem.status, 404);
     }

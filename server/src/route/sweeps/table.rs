@@ -1,12 +1,14 @@
 //! Table of a sweep, as data or picture.
 
+use std::sync::Arc;
+
 use ::drillsweep_chart as chart;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::judgement::LimitChanges;
-use drillsweep_api::view::points::PointsTable;
 use drillsweep_api::{ColumnList, Signs};
+use drillsweep_quantity::columns::CLASS;
 use drillsweep_quantity::{Name, UnitChoice};
 use drillsweep_store::WorkState;
 use drillsweep_table::tables;
@@ -113,7 +115,8 @@ pub(crate) async fn table(
     let key =
         Tag::of(&form, &("map", &id, sweep.version, &sweep.name, &fields, &limits, signs, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
-    let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let total = sweep.counts.total.unsigned_abs();
+    let memory = memory_of_points(&app, &id, total).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let nodes = match format.is_picture() {
         true => nodes_of(fields.as_deref().unwrap_or_default()),
@@ -123,15 +126,18 @@ pub(crate) async fn table(
         true => None,
         false => statics_of_first(&app, &id).await?,
     };
-    let (runtime, store) = (Handle::current(), app.store.clone());
+    let (runtime, store, tables) = (Handle::current(), app.store.clone(), app.tables.clone());
     app.answer(format, key.as_str(), memory, move || {
+        let read = || verified.points(&store, &id, total, &runtime);
+        let points = tables.get_or_read(&id, sweep.version, read)?;
         // A picture needs more than the requested columns.
-        let table = match &fields {
-            Some(fields) if !format.is_picture() => PointsTable::keeping(fields.iter().map(String::as_str)),
-            _ => PointsTable::default(),
-        }
-        .judged(limits);
-        let points = verified.points(table, &store, &id, &runtime)?;
+        let kept = fields.as_deref().filter(|_| !format.is_picture());
+        let is_judged = kept.is_none_or(|kept| kept.iter().any(|name| name == CLASS.name));
+        let classes = if is_judged { points.classes(&limits) } else { Vec::new() };
+        let points = match kept {
+            Some(kept) => points.keeping(kept),
+            None => Arc::unwrap_or_clone(points),
+        };
         let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
         if let Some(statics) = statics
             && !parameters.iter().any(|name| moves_nodes(name))
@@ -139,7 +145,7 @@ pub(crate) async fn table(
             // Without depths the picture is still useful.
             view.places = recordings::depths(&statics, &nodes).unwrap_or_default();
         }
-        let mut table = signs.of_table(points.finish());
+        let mut table = signs.of_table(points.finish(Some(classes)));
         let findings = &verified.findings;
         if !findings.warnings.is_empty() {
             table = table.attribute("warnings", findings.warnings.clone());
@@ -191,18 +197,15 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     if let Some(columns) = app.columns.get(&id, sweep.version) {
         return Ok(Json(columns));
     }
-    let place = app.view(memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?).await?;
+    let total = sweep.counts.total.unsigned_abs();
+    let place = app.view(memory_of_points(&app, &id, total).await?).await?;
     let verified = Verified::load(&app.store, &id).await?;
     let runtime = Handle::current();
     place
         .run(move || {
-            let points = verified.points(
-                PointsTable::keeping([]).judged(app.config.operating_limits.clone()),
-                &app.store,
-                &id,
-                &runtime,
-            )?;
-            let columns = ColumnList::of(&points.finish());
+            let read = || verified.points(&app.store, &id, total, &runtime);
+            let points = app.tables.get_or_read(&id, sweep.version, read)?;
+            let columns = ColumnList::of(&points.keeping(&[]).finish(Some(Vec::new())));
             app.columns.put(id, sweep.version, columns.clone());
             Ok(Json(columns))
         })

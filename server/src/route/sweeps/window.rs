@@ -74,12 +74,13 @@ pub(crate) async fn window(
     let limits = app.config.operating_limits.with(&limits);
     let slice = slice.unwrap_or_default();
     let key = Tag::of(&form, &("window", &id, sweep.version, &sweep.name, &limits, signs, &slice));
-    let memory = memory_of_points(&app, &id, sweep.counts.total.unsigned_abs()).await?;
+    let total = sweep.counts.total.unsigned_abs();
+    let memory = memory_of_points(&app, &id, total).await?;
     let verified = Verified::load(&app.store, &id).await?;
-    let (runtime, store) = (Handle::current(), app.store.clone());
+    let (runtime, store, tables) = (Handle::current(), app.store.clone(), app.tables.clone());
     app.answer(format, key.as_str(), memory, move || {
-        let mut window = OperatingWindow::new(limits);
-        verified.each_point(&store, &id, &runtime, |point| window.push(point))?;
+        let read = || verified.points(&store, &id, total, &runtime);
+        let window = OperatingWindow::of_table(&*tables.get_or_read(&id, sweep.version, read)?, limits);
         let parameters = window.parameters().map(str::to_owned).collect();
         let table = signs.of_table(window.finish());
         let fields = format.is_picture().then(|| vec![CLASS.name.to_owned()]);

@@ -15,11 +15,11 @@ import {
 import { draw, laidOut } from "../draw/plots.js";
 import { sayTrack } from "../draw/string-track.js";
 import { timeDots } from "../draw/time-line.js";
-import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
+import { ACCOUNTS, floorOf, HELD, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
-import { largestFirst, panelsInPlane, panelsOverTime } from "./panels.js";
+import { largestFirst, panelsInPlane, panelsOver } from "./panels.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
@@ -249,7 +249,7 @@ async function drawHistories(place, comparison) {
 async function drawOverTime(place, { window, signal }, found, yaxis, shows) {
   await laidOut(place, signal);
   const panels = found.map(([point, trace]) => ({ ...point, traces: [trace], scale: "", yaxis }));
-  const { traces, layout } = panelsOverTime(place, panels);
+  const { traces, layout } = panelsOver(place, panels);
   return draw(
     place,
     traces,
@@ -306,14 +306,32 @@ async function drawSpectra(place, comparison) {
     comparison.says.push(
       `Shaded: frequencies that the time steps${isAlike ? "" : ` of point ${least[0].number}`} do not resolve, above ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`,
     );
-  const traces = found.map(([point, spectrum]) =>
-    spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name),
+  await laidOut(place, comparison.signal);
+  const isLog = comparison.query.get("amplitude") === "log";
+  const common = spectrumLayout(
+    found.map(([, table]) => ({ table })),
+    isLog,
   );
-  const layout = spectrumLayout(
-    found.map(([point, table]) => ({ table, name: String(point.number) })),
-    comparison.query.get("amplitude") === "log",
+  const panels = found.map(([point, spectrum]) => ({
+    ...point,
+    traces: [spectrumTrace(spectrum, { color: point.colour }, point.name)],
+    scale: "",
+    yaxis: common.yaxis,
+  }));
+  const { traces, layout } = panelsOver(place, panels, common.xaxis);
+  const lines = found.flatMap(([, table], order) =>
+    spectrumLayout([{ table }], isLog).annotations.map((note) => ({
+      ...note,
+      yref: order ? `y${order + 1}` : "y",
+    })),
   );
-  return draw(place, largestFirst(traces), { ...layout, shows: range }, comparison.signal);
+  const annotations = [...layout.annotations, ...lines];
+  return draw(
+    place,
+    traces,
+    { ...layout, annotations, shapes: common.shapes, shows: range },
+    comparison.signal,
+  );
 }
 
 /** Highest frequency of compared spectra [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
@@ -339,26 +357,45 @@ async function drawEnergy(place, comparison) {
     ledger((await comparison.table(point, "energy")).columns),
   );
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
-  const { symbol, size } = suitedUnit(
-    "kinetic",
-    found.flatMap(([, one]) => one.accounts.map(one.change)),
+  const { symbol, size } = unit("kinetic");
+  const changes = found.map(([, one]) =>
+    accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
   );
-  const traces = found.map(([point, one]) => ({
+  const sizes = changes.flat().map((change) => Math.abs(change ?? 0));
+  const floor = 10 ** floorOf(sizes);
+  const traces = found.map(([point], order) => ({
     type: "bar",
+    orientation: "h",
     name: point.name,
     showlegend: true,
-    x: accounts.map(label),
-    y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
+    x: changes[order].map((change) => change && Math.max(floor, Math.abs(change))),
+    y: accounts.map(label),
     marker: { color: point.colour },
-    describe: (/** @type {{x: string, y: number}} */ { x, y }) => `${x}: ${number(y)} ${symbol}`,
+    text: changes[order].map((change, row) =>
+      change === null ? "" : `${label(accounts[row])}: ${number(change)} ${symbol}`,
+    ),
   }));
+  const largestOf = (/** @type {number} */ row) => Math.max(...changes.map((one) => Math.abs(one[row] ?? 0)));
+  const order = accounts.map((_, row) => row).sort((a, b) => largestOf(a) - largestOf(b));
+  const lost = found.flatMap(([point], which) =>
+    HELD.filter((name) => (changes[which][accounts.indexOf(name)] ?? 0) < 0).map(
+      (name) => `${name} energy of point ${point.number}`,
+    ),
+  );
+  comparison.says.push(
+    `Sizes of the changes over the run${lost.length ? `; negative: ${lost.join(", ")}` : ""}.`,
+  );
   return draw(
     place,
     traces,
     {
       shows: "",
-      xaxis: { title: "" },
-      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic", size },
+      xaxis: {
+        title: `energy [${symbol}], logarithmic`,
+        type: "log",
+        range: [floor, Math.max(floor, ...sizes) * 10 ** 0.1],
+      },
+      yaxis: { title: "", categoryarray: order.map((row) => label(accounts[row])) },
     },
     comparison.signal,
   );

@@ -3,6 +3,9 @@
 /** Samples in a picture: two for each pixel of a screen of usual width. */
 const SHOWN = 2500;
 
+/** Columns of the equilibrium that place a node along the hole and across it. */
+export const ALONG = "node,measured_depth,low_side_angle,clearance";
+
 /** Frequencies up to which full spectra are shown [Hz]. */
 const RANGES = ["5", "20", "50", "100"];
 
@@ -19,7 +22,7 @@ const RANGES = ["5", "20", "50", "100"];
  */
 export function nodeTables(scenario, query) {
   return [
-    ["statics", { fields: "node,measured_depth,low_side_angle,clearance" }],
+    ["statics", { fields: ALONG }],
     ["orbit", { ...selectedNode(scenario, query), max_points: SHOWN }],
   ];
 }

@@ -239,11 +239,11 @@ def test_the_string_moves_before_all_snapshots_have_arrived(opened: Opens, serve
     def reach() -> float:
         return float(slider.get_attribute("max") or 0)
 
-    assert reach() == pytest.approx(1.0)
+    assert reach() == pytest.approx(0.28)
     expect(page.get_by_text("up to 6 s on the way")).to_be_visible()
     # It waits at the end of what is there, and goes on as more arrives.
     page.get_by_role("button", name="Play").click()
-    until(page, lambda: clock(page) == pytest.approx(1.0))
+    until(page, lambda: clock(page) == pytest.approx(0.28))
     expect(page.get_by_role("button", name="Pause")).to_be_visible()
     release()
     until(page, lambda: reach() == pytest.approx(5.96))
@@ -340,3 +340,36 @@ def test_compared_points_are_read_at_one_time(opened: Opens, sweep: Sweep) -> No
     until(page, lambda: "time=0.32" in page.url)
     page.get_by_role("link", name="Orbits").click()
     expect(drawn(page, "Orbits").locator(".time-dots i")).to_have_count(2)
+
+
+def test_a_tab_that_is_held_down_while_the_link_takes_the_time_opens(opened: Opens, sweep: Sweep) -> None:
+    points = f"{sweep.id}:1,{sweep.id}:2"
+    for view, name, tab, other in [
+        (f"compare?points={points}&view=history&time=0.3", "Histories", "Orbits", "view=orbit"),
+        (f"sweeps/{sweep.id}/points/1?view=motion&time=0.3", "History of node", "Spectrogram", "view=spectrogram"),
+        (f"sweeps/{sweep.id}/points/1?view=motion&time=0.3", "History of node", "Next →", "points/2"),
+    ]:
+        page = opened(f"#/{view}")
+        drawn(page, name)
+        page.get_by_role("link", name=tab, exact=True).hover()
+        page.mouse.down()
+        page.get_by_role("slider", name=f"Time cursor: {name}").dispatch_event("keydown", {"key": "PageUp"})
+        until(page, lambda: "time=0.3&" not in f"{page.url}&")
+        page.mouse.up()
+        until(page, lambda other=other: other in page.url)
+        assert "time=0.3" in page.url
+
+
+def test_a_view_opened_at_once_after_a_move_of_the_time_cursor_begins_at_its_time(
+    opened: Opens, recorded: Sweep
+) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=motion&time=0.3")
+    drawn(page, "History of node")
+    page.get_by_role("slider", name="Time cursor: History of node").focus()
+    # Both are events of one task, so that no time passes between them.
+    page.evaluate("""() => {
+        document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "Home", bubbles: true }));
+        document.querySelector("nav.tabs [data-view=spectrogram]").click();
+    }""")
+    drawn(page, "Spectrogram of node")
+    assert re.search(r"time=0(\.0\d*)?(&|$)", page.url)

@@ -295,7 +295,7 @@ def test_one_time_cursor_moves_all_views_of_a_point(opened: Opens, recorded: Swe
     page.mouse.up()
     until(page, lambda: at(0.13, 0.02))
     until(page, lambda: pixels(picture) != then)
-    expect(page.get_by_text(re.compile(r"^At 0\.1\d* s: speed, bit -?[\d.]+ rad/s · torque, bit"))).to_be_visible()
+    expect(page.get_by_text(re.compile(r"^At 0\.1\d* s: speed, bit \N{MINUS SIGN}?[\d.]+ rad/s · torque, bit"))).to_be_visible()
     # Arrow keys move it by small steps.
     before = clock(page)
     lines["Contact"].focus()

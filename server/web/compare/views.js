@@ -3,6 +3,7 @@
 import { valueAtTime } from "../data/at-time.js";
 import { spectrumRange } from "../data/motion-requests.js";
 import { partsOf } from "../data/string-parts.js";
+import { signRules } from "../data/signs.js";
 import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
@@ -26,6 +27,8 @@ import { drawWells } from "./wells.js";
 
 /** Samples of a line over time, and of an orbit in its panel, which is a part of the screen. */
 const [SHOWN, OF_ORBIT] = [3000, 2000];
+/** Room above compared spectra, as a part of their largest amplitude. */
+const OF_NAMES = 0.2;
 /** Clearances that differ by less are one [m]. */
 const SAME_CLEARANCE = 1e-6;
 /** Part of a depth below which the ends of two strings are one. */
@@ -163,6 +166,7 @@ async function drawQuantities(place, comparison) {
   const strings = drawable.map(({ detail }) => detail.scenario.string.sections);
   const isOne = new Set(strings.map((sections) => JSON.stringify(sections))).size === 1;
   if (isOne) comparison.says.push(sayTrack(partsOf(strings[0])));
+  comparison.says.push(signRules(profiles));
   const track = isOne ? { parts: partsOf(strings[0]), nodes: [] } : null;
   return drawProfiles(place, profiles, drawable, track, comparison.signal);
 }
@@ -312,12 +316,13 @@ async function drawSpectra(place, comparison) {
     found.map(([, table]) => ({ table })),
     isLog,
   );
-  const panels = found.map(([point, spectrum]) => ({
-    ...point,
-    traces: [spectrumTrace(spectrum, { color: point.colour }, point.name)],
-    scale: "",
-    yaxis: common.yaxis,
-  }));
+  const drawn = found.map(([point, spectrum]) =>
+    spectrumTrace(spectrum, { color: point.colour }, point.name),
+  );
+  const largest = Math.max(...drawn.flatMap(({ y }) => y.map((value) => value ?? 0)));
+  // The highest lines have room for their frequencies.
+  const yaxis = { ...common.yaxis, ...(isLog ? {} : { range: [0, (1 + OF_NAMES) * largest] }) };
+  const panels = found.map(([point], order) => ({ ...point, traces: [drawn[order]], scale: "", yaxis }));
   const { traces, layout } = panelsOver(place, panels, common.xaxis);
   const lines = found.flatMap(([, table], order) =>
     spectrumLayout([{ table }], isLog).annotations.map((note) => ({

@@ -7,6 +7,14 @@ const preload = (() => {
   const WHOLE = 3000;
   /** Sweeps on a page of the list. */
   const PAGE = 100;
+  /** Request that the form of a new sweep proposes; `submit/view.js` writes its members in this order. */
+  const PROPOSED = {
+    preset: "paper-200m-damped",
+    axes: {
+      flow_rate: { values: [0.01, 0.04, 0.06] },
+      mud_density: { from: 1200, to: 2100, count: 4 },
+    },
+  };
   /** Time that an answer waits for the view to request it; later it may be out of date. */
   const KEPT_MS = 3000;
 
@@ -45,6 +53,8 @@ const preload = (() => {
   const answers = new Map();
   /** Addresses that a view has asked for while answers are kept. @type {Set<string>} */
   const taken = new Set();
+  /** Dry run of a new sweep, which the service computes for a second or more. @type {{url: string, body: string, answer: Promise<Response>, abort: AbortController} | null} */
+  let dryRun = null;
   /** Nothing is sent for any more. */
   let isOver = false;
 
@@ -135,6 +145,35 @@ const preload = (() => {
     answers.set(url, answer);
   }
 
+  /** Plans the request that the form of a new sweep begins with. @param {URLSearchParams} query of the link */
+  function sendDryRun(query) {
+    const isBare = [...query.keys()].length === 0;
+    const body = isBare ? JSON.stringify(PROPOSED) : query.get("request");
+    if (!body || query.has("from")) return;
+    const abort = new AbortController();
+    const url = "/v1/sweeps?dry_run=true";
+    const headers = { Accept: "application/json", "Content-Type": "application/json" };
+    const answer = fetch(url, { method: "POST", headers, body, signal: abort.signal });
+    answer.catch(() => {});
+    dryRun = { url, body, answer, abort };
+    addEventListener("hashchange", () => (dryRun = null), { once: true });
+  }
+
+  /**
+   * The answer to a request with a body that has been sent already, once; one for another body is given up.
+   * @param {string} url
+   * @param {string | undefined} body
+   * @returns {Promise<Response> | undefined}
+   */
+  function posted(url, body) {
+    const before = dryRun;
+    if (before?.url !== url) return undefined;
+    dryRun = null;
+    if (before.body === body) return before.answer;
+    before.abort.abort();
+    return undefined;
+  }
+
   /** Document of a sent request, once it has arrived; `null` if there is none. @param {string} url */
   async function received(url) {
     const answer = await answers.get(url);
@@ -183,6 +222,10 @@ const preload = (() => {
     );
     send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
   }
+  if (view === "submit") {
+    send("/v1/scenarios");
+    sendDryRun(first.query);
+  }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
   // The view reports failures when it sends the request itself.
@@ -197,5 +240,5 @@ const preload = (() => {
     answers.clear();
     taken.clear();
   }, KEPT_MS);
-  return { WHOLE, address, firstPage, route, viewOf, modules, sent };
+  return { WHOLE, PROPOSED, address, firstPage, route, viewOf, modules, sent, posted };
 })();

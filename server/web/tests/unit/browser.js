@@ -23,6 +23,7 @@ Object.assign(globalThis, {
     address: (path) => path,
     route: () => ({ path: [], query: new URLSearchParams() }),
     sent: () => undefined,
+    posted: () => undefined,
   },
 });
 

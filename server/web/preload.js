@@ -192,7 +192,7 @@ const preload = (() => {
   }
 
   /**
-   * Sends for what the motion at a point that has been sent for is shown from.
+   * Sends for what the motion of a node or of the string is shown from, at a point that has been sent for.
    * @param {string} point
    * @param {URLSearchParams} query of the link
    */
@@ -202,12 +202,16 @@ const preload = (() => {
       received(point),
       import(new URL("data/motion-requests.js", folder).href),
     ]);
-    if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
+    if (!answer?.summary) return;
     const { scenario } = answer;
-    const tables = [
-      ...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)),
-      ...requests.nodeTables(scenario, query),
-    ];
+    const isOfString = query.get("view") === "string";
+    if (!isOfString && !scenario.recording.nodes.length) return;
+    const tables = isOfString
+      ? requests.stringTables(scenario)
+      : [
+          ...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)),
+          ...requests.nodeTables(scenario, query),
+        ];
     for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
   }
 
@@ -231,7 +235,7 @@ const preload = (() => {
   // The view reports failures when it sends the request itself.
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
   if (view === "point") sendDiagnosis(`/v1/sweeps/${id}/points/${ordinal}`).catch(() => {});
-  if (view === "point" && first.query.get("view") === "motion")
+  if (view === "point" && ["motion", "string"].includes(first.query.get("view") ?? ""))
     sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
   load("main.js");
   modules(first);

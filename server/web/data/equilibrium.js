@@ -1,9 +1,6 @@
 // Columns of the equilibrium that place the nodes of a string in its hole.
 
-import { ALONG } from "./motion-requests.js";
-
-/** The further columns, for a picture in space. */
-const IN_SPACE = "north,east,true_vertical_depth,u,v";
+import { ALONG, IN_SPACE } from "./motion-requests.js";
 
 /**
  * Columns for pictures of a string in space, in two requests, so that the first one is shared.

@@ -1,7 +1,7 @@
 // The snapshots of a point: how many there are, and their values by time and node.
 
 import { Problem } from "./api.js";
-import { ALONG } from "./motion-requests.js";
+import { ALONG, TIMES } from "./motion-requests.js";
 import { getArrays } from "./npz.js";
 
 /** Nodes of all snapshots together that the page takes at once; of more every k-th snapshot. */
@@ -32,8 +32,7 @@ const NEAR = 1e-2;
  * @param {(name: string, query: Record<string, any>) => Promise<any>} table a table of the point's result
  */
 export async function snapshotTimes(table) {
-  // One of a single node was served, so that the interval is that of all.
-  const { columns, attributes } = await table("snapshots", { node: 1, max_frames: 1 });
+  const { columns, attributes } = await table("snapshots", TIMES);
   const { snapshots: count, first, interval } = attributes;
   return { names: Object.keys(columns), count, first, interval: interval / Math.max(1, count) };
 }

@@ -7,7 +7,7 @@ import re
 
 from playwright.sync_api import Route, expect
 
-from browsing import Opens, drawn
+from browsing import MINUS, Opens, drawn
 from drillsweep import Sweep
 
 
@@ -128,7 +128,7 @@ def test_points_that_are_dragged_over_in_the_scatter_are_compared(opened: Opens,
 def test_negative_numbers_have_one_sign_and_its_rule(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/sweeps/{named.id}?view=table&columns=ordinal,torque_top,tension_top")
     cell = page.locator(".rows tbody tr:not(.gap)").first.locator("td.number").nth(1)
-    expect(cell).to_have_text(re.compile(r"^\N{MINUS SIGN}[\d.]+$"))
+    expect(cell).to_have_text(re.compile(rf"^{MINUS}[\d.]+$"))
     expect(page.get_by_text("Torque is negative if it opposes clockwise rotation.")).to_be_visible()
     page = opened(f"#/sweeps/{named.id}/points/1?profiles=effective_tension,torque")
     drawn(page, "Profiles")

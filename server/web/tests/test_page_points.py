@@ -570,6 +570,29 @@ def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens
     assert tables() == ahead
 
 
+def test_a_string_in_motion_is_requested_before_its_modules_and_needs_little(opened: Opens, recorded: Sweep) -> None:
+    page = opened("#/nowhere")
+    asked: list[str] = []
+    held: list[Route] = []
+    page.on("request", lambda request: asked.append(request.url.partition("/points/1/")[2]))
+    page.route("**/point/string.js", lambda route: held.append(route))
+    address = page.url.replace("#/nowhere", f"#/sweeps/{recorded.id}/points/1?view=string")
+    page.goto("about:blank")
+    page.goto(address, wait_until="commit")
+
+    def tables() -> list[str]:
+        return sorted(url for url in asked if url.startswith(("statics", "snapshots")) and "npz" not in url)
+
+    until(page, lambda: len(tables()) == 3)
+    ahead = tables()
+    for route in held:
+        route.continue_()
+    expect(page.locator("canvas.scene[data-drawn]")).to_be_visible()
+    # No table is requested twice, and none as a whole.
+    assert tables() == ahead
+    assert all("fields=" in url or "node=1" in url for url in ahead)
+
+
 def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sweep) -> None:
     page = opened("#/nowhere")
 

@@ -15,6 +15,8 @@ const preload = (() => {
       mud_density: { from: 1200, to: 2100, count: 4 },
     },
   };
+  /** Points that are compared, at most. */
+  const MOST = 6;
   /** Time that an answer waits for the view to request it; later it may be out of date. */
   const KEPT_MS = 3000;
 
@@ -91,6 +93,16 @@ const preload = (() => {
    */
   function firstPage({ state, name, owner, tag }) {
     return { state, name: name.trim(), owner: owner.trim(), tag: tag.trim(), limit: PAGE };
+  }
+
+  /**
+   * The points that a comparison's link names, each once.
+   * @param {URLSearchParams} query
+   * @returns {string[]} such as `SWEEP:3`
+   */
+  function comparedIn(query) {
+    const keys = (query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key));
+    return [...new Set(keys)].slice(0, MOST);
   }
 
   /**
@@ -226,6 +238,13 @@ const preload = (() => {
     );
     send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
   }
+  if (view === "compare") {
+    send(address("/v1/sweeps", { limit: PAGE }));
+    for (const key of comparedIn(first.query)) {
+      const [sweep, point] = key.split(":");
+      send(`/v1/sweeps/${sweep}/points/${point}`);
+    }
+  }
   if (view === "submit") {
     send("/v1/scenarios");
     sendDryRun(first.query);
@@ -244,5 +263,18 @@ const preload = (() => {
     answers.clear();
     taken.clear();
   }, KEPT_MS);
-  return { WHOLE, PROPOSED, address, firstPage, route, viewOf, modules, sent, posted };
+  return {
+    WHOLE,
+    PAGE,
+    MOST,
+    PROPOSED,
+    address,
+    comparedIn,
+    firstPage,
+    route,
+    viewOf,
+    modules,
+    sent,
+    posted,
+  };
 })();

@@ -62,7 +62,7 @@ def test_the_plan_is_requested_once_before_the_form_is_loaded(opened: Opens) -> 
         assert len(asked) == 1
         assert requested(page) == json.loads(asked[0])
     # Another request than the one of the link is planned anew.
-    page.get_by_label("Name", exact=True).fill("other")
+    page.get_by_role("textbox", name="Name", exact=True).fill("other")
     until(page, lambda: len(asked) == 2)
     planned(page)
 

@@ -291,7 +291,6 @@ def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Open
 def test_energy_is_compared_over_time(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=energy")
     picture = drawn(page, "^Energy$")
-    page.get_by_label("Shows", exact=True).select_option("kinetic")
     read = "place => place.picture.traces.map(({ x, y }) => ({ x: [...x], y: [...y] }))"
     table = named.point(2).energy()
     # All accounts, the smallest too, are bars on a logarithmic scale.
@@ -302,6 +301,7 @@ def test_energy_is_compared_over_time(opened: Opens, named: Sweep) -> None:
         float(table["dissipated_friction"][-1] - table["dissipated_friction"][0]), rel=1e-6
     )
     assert min(bars["x"]) > 0
+    page.get_by_label("Shows", exact=True).select_option("kinetic")
     until(page, lambda: len(picture.evaluate(read)[0]["x"]) == len(table["time"]))
     np.testing.assert_allclose(picture.evaluate(read)[1]["x"], table["time"], rtol=1e-6)
     assert "account=kinetic" in page.url

@@ -240,7 +240,9 @@ def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> N
             if re.fullmatch(rf"[-{MINUS}\d.]+", text)
         }
         said = re.search(r"effective tension (\S+) kN", str(reading.text_content()))
-        return said is not None and any(float(said.group(1)) == pytest.approx(value, rel=2e-4) for value in seen)
+        return said is not None and any(
+            float(said.group(1).replace(MINUS, "-")) == pytest.approx(value, rel=2e-4) for value in seen
+        )
 
     before = [reading.text_content()]
     for part in (0.31, 0.485, 0.62):
@@ -264,8 +266,10 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
         until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
         words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*side force (\S+) k?N", reading.inner_text())
         assert words is not None, reading.inner_text()
-        assert [float(word) for word in words.groups()[:2]] == pytest.approx([depth, tension], rel=1e-3)
-        assert float(words.group(3)) == pytest.approx(force, rel=1e-3, abs=1e-9)
+        assert [float(word.replace(MINUS, "-")) for word in words.groups()[:2]] == pytest.approx(
+            [depth, tension], rel=1e-3
+        )
+        assert float(words.group(3).replace(MINUS, "-")) == pytest.approx(force, rel=1e-3, abs=1e-9)
         expect(cursor).to_have_attribute("aria-valuetext", f"{words.group(1)} m")
 
     cursor.focus()

@@ -7,6 +7,16 @@ const preload = (() => {
   const WHOLE = 3000;
   /** Sweeps on a page of the list. */
   const PAGE = 100;
+  /** Request that the form of a new sweep proposes; `submit/view.js` writes its members in this order. */
+  const PROPOSED = {
+    preset: "paper-200m-damped",
+    axes: {
+      flow_rate: { values: [0.01, 0.04, 0.06] },
+      mud_density: { from: 1200, to: 2100, count: 4 },
+    },
+  };
+  /** Points that are compared, at most. */
+  const MOST = 6;
   /** Time that an answer waits for the view to request it; later it may be out of date. */
   const KEPT_MS = 3000;
 
@@ -45,6 +55,8 @@ const preload = (() => {
   const answers = new Map();
   /** Addresses that a view has asked for while answers are kept. @type {Set<string>} */
   const taken = new Set();
+  /** Dry run of a new sweep, which the service computes for a second or more. @type {{url: string, body: string, answer: Promise<Response>, abort: AbortController} | null} */
+  let dryRun = null;
   /** Nothing is sent for any more. */
   let isOver = false;
 
@@ -81,6 +93,16 @@ const preload = (() => {
    */
   function firstPage({ state, name, owner, tag }) {
     return { state, name: name.trim(), owner: owner.trim(), tag: tag.trim(), limit: PAGE };
+  }
+
+  /**
+   * The points that a comparison's link names, each once.
+   * @param {URLSearchParams} query
+   * @returns {string[]} such as `SWEEP:3`
+   */
+  function comparedIn(query) {
+    const keys = (query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key));
+    return [...new Set(keys)].slice(0, MOST);
   }
 
   /**
@@ -135,6 +157,35 @@ const preload = (() => {
     answers.set(url, answer);
   }
 
+  /** Plans the request that the form of a new sweep begins with. @param {URLSearchParams} query of the link */
+  function sendDryRun(query) {
+    const isBare = [...query.keys()].length === 0;
+    const body = isBare ? JSON.stringify(PROPOSED) : query.get("request");
+    if (!body || query.has("from")) return;
+    const abort = new AbortController();
+    const url = "/v1/sweeps?dry_run=true";
+    const headers = { Accept: "application/json", "Content-Type": "application/json" };
+    const answer = fetch(url, { method: "POST", headers, body, signal: abort.signal });
+    answer.catch(() => {});
+    dryRun = { url, body, answer, abort };
+    addEventListener("hashchange", () => (dryRun = null), { once: true });
+  }
+
+  /**
+   * The answer to a request with a body that has been sent already, once; one for another body is given up.
+   * @param {string} url
+   * @param {string | undefined} body
+   * @returns {Promise<Response> | undefined}
+   */
+  function posted(url, body) {
+    const before = dryRun;
+    if (before?.url !== url) return undefined;
+    dryRun = null;
+    if (before.body === body) return before.answer;
+    before.abort.abort();
+    return undefined;
+  }
+
   /** Document of a sent request, once it has arrived; `null` if there is none. @param {string} url */
   async function received(url) {
     const answer = await answers.get(url);
@@ -153,7 +204,7 @@ const preload = (() => {
   }
 
   /**
-   * Sends for what the motion at a point that has been sent for is shown from.
+   * Sends for what the motion of a node or of the string is shown from, at a point that has been sent for.
    * @param {string} point
    * @param {URLSearchParams} query of the link
    */
@@ -163,12 +214,16 @@ const preload = (() => {
       received(point),
       import(new URL("data/motion-requests.js", folder).href),
     ]);
-    if (!answer?.summary || !answer.scenario.recording.nodes.length) return;
+    if (!answer?.summary) return;
     const { scenario } = answer;
-    const tables = [
-      ...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)),
-      ...requests.nodeTables(scenario, query),
-    ];
+    const isOfString = query.get("view") === "string";
+    if (!isOfString && !scenario.recording.nodes.length) return;
+    const tables = isOfString
+      ? requests.stringTables(scenario)
+      : [
+          ...requests.windowTables(scenario, query, requests.chosenWindow(answer, query)),
+          ...requests.nodeTables(scenario, query),
+        ];
     for (const [name, asks] of tables) send(address(`${point}/${name}`, { format: "json", ...asks }));
   }
 
@@ -183,12 +238,23 @@ const preload = (() => {
     );
     send(address("/v1/sweeps", firstPage({ state, name, owner, tag })));
   }
+  if (view === "compare") {
+    send(address("/v1/sweeps", { limit: PAGE }));
+    for (const key of comparedIn(first.query)) {
+      const [sweep, point] = key.split(":");
+      send(`/v1/sweeps/${sweep}/points/${point}`);
+    }
+  }
+  if (view === "submit") {
+    send("/v1/scenarios");
+    sendDryRun(first.query);
+  }
   if (view === "point") send(`/v1/sweeps/${id}/points/${ordinal}`);
   if (view === "sweep" || view === "point") send(`/v1/sweeps/${id}`);
   // The view reports failures when it sends the request itself.
   if (view === "sweep") sendTable(`/v1/sweeps/${id}`).catch(() => {});
   if (view === "point") sendDiagnosis(`/v1/sweeps/${id}/points/${ordinal}`).catch(() => {});
-  if (view === "point" && first.query.get("view") === "motion")
+  if (view === "point" && ["motion", "string"].includes(first.query.get("view") ?? ""))
     sendMotion(`/v1/sweeps/${id}/points/${ordinal}`, first.query).catch(() => {});
   load("main.js");
   modules(first);
@@ -197,5 +263,18 @@ const preload = (() => {
     answers.clear();
     taken.clear();
   }, KEPT_MS);
-  return { WHOLE, address, firstPage, route, viewOf, modules, sent };
+  return {
+    WHOLE,
+    PAGE,
+    MOST,
+    PROPOSED,
+    address,
+    comparedIn,
+    firstPage,
+    route,
+    viewOf,
+    modules,
+    sent,
+    posted,
+  };
 })();

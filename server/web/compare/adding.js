@@ -8,7 +8,7 @@ import { attend } from "../ui/notices.js";
 /** Rest of typing before sweeps are searched. */
 const REST_MS = 200;
 /** Sweeps that are offered at once. */
-export const OFFERED = 100;
+export const OFFERED = preload.PAGE;
 
 /** @typedef {import("./comparison.js").Compared} Compared */
 

@@ -2,8 +2,8 @@
 
 import { inks } from "../draw/plots.js";
 
-/** Height of a panel over time, of its name above it, and of the axis below all [pixels]. */
-const [ROW_PX, NAME_PX, AXIS_PX] = [150, 26, 74];
+/** Height of a panel over time, of a name of one line above it, of each further line, and of the axis below all [pixels]. */
+const [ROW_PX, NAME_PX, LINE_PX, AXIS_PX] = [150, 26, 15, 74];
 /** Least height of a picture [pixels]. */
 const LEAST_PX = 420;
 /** Width that panels next to each other need, and a panel's largest height [pixels]. */
@@ -17,16 +17,18 @@ const [SPARE, BETWEEN] = [0.05, 0.07];
  */
 
 /**
- * Panels below each other over one axis of time.
+ * Panels below each other over one axis. Panels of one scale have the range of all their values, or the one that their axis finds itself.
  * @param {HTMLElement} place of the picture, whose height follows their number
  * @param {Panel[]} panels
+ * @param {any} [xaxis] of all; of time unless given
  * @returns {{traces: any[], layout: any}}
  */
-export function panelsOverTime(place, panels) {
+export function panelsOver(place, panels, xaxis = { title: "time [s]" }) {
   const count = Math.max(1, panels.length);
-  const height = Math.max(LEAST_PX, count * ROW_PX + AXIS_PX);
+  const names = namesOf(panels, place.clientWidth);
+  const height = Math.max(LEAST_PX, count * (ROW_PX + names.height - NAME_PX) + AXIS_PX);
   place.style.height = `${height}px`;
-  const gap = NAME_PX / (height - AXIS_PX);
+  const gap = names.height / (height - AXIS_PX);
   /** @type {Record<string, any>} */
   const layout = { showlegend: false, margin: { l: 60, r: 16, t: 8, b: 50 }, annotations: [] };
   panels.forEach((panel, order) => {
@@ -37,12 +39,14 @@ export function panelsOverTime(place, panels) {
       // A panel is too low for its unit on the same line.
       title: panel.yaxis.title.replace(" [", "<br>["),
       domain: [bottom, bottom + 1 / count - gap],
-      range: rangeOf(panels.filter(({ scale }) => scale === panel.scale)),
+      ...(panel.yaxis.rangemode
+        ? {}
+        : { range: rangeOf(panels.filter(({ scale }) => scale === panel.scale)) }),
       ...(first === order ? {} : { matches: refOf("y", first) }),
     };
-    layout.annotations.push(nameOf(panel, 0, bottom + 1 / count - gap, place.clientWidth));
+    layout.annotations.push(noteOf(names.texts[order], panel.colour, 0, bottom + 1 / count - gap));
   });
-  layout.xaxis = { title: "time [s]", anchor: refOf("y", count - 1) };
+  layout.xaxis = { ...xaxis, anchor: refOf("y", count - 1) };
   const traces = panels.flatMap((panel, order) =>
     panel.traces.map((trace) => ({ ...trace, yaxis: refOf("y", order) })),
   );
@@ -60,7 +64,9 @@ export function panelsInPlane(place, panels, { xaxis, yaxis }) {
   const width = place.clientWidth;
   const columns = columnsOf(panels.length, width);
   const rows = Math.ceil(panels.length / columns);
-  const row = Math.min(MOST_PX, width / columns) + NAME_PX;
+  const wide = (1 - (columns - 1) * BETWEEN) / columns;
+  const names = namesOf(panels, wide * width);
+  const row = Math.min(MOST_PX, width / columns) + names.height;
   const height = rows * row + AXIS_PX;
   place.style.height = `${height}px`;
   // Below each row stand the numbers of its axis.
@@ -69,9 +75,8 @@ export function panelsInPlane(place, panels, { xaxis, yaxis }) {
   const layout = { showlegend: false, margin: { l: 60, r: 16, t: 8, b: 50 }, annotations: [] };
   panels.forEach((panel, order) => {
     const [column, line] = [order % columns, Math.floor(order / columns)];
-    const wide = (1 - (columns - 1) * BETWEEN) / columns;
     const left = column * (wide + BETWEEN);
-    const top = 1 - line / rows - NAME_PX / height;
+    const top = 1 - line / rows - names.height / height;
     const isLowest = order + columns >= panels.length;
     layout[axisOf("x", order)] = {
       ...xaxis,
@@ -87,7 +92,7 @@ export function panelsInPlane(place, panels, { xaxis, yaxis }) {
       anchor: refOf("x", order),
       ...(order ? { matches: "y" } : {}),
     };
-    layout.annotations.push(nameOf(panel, left, top, wide * width));
+    layout.annotations.push(noteOf(names.texts[order], panel.colour, left, top));
   });
   const traces = panels.flatMap((panel, order) =>
     panel.traces.map((trace) => ({ ...trace, xaxis: refOf("x", order), yaxis: refOf("y", order) })),
@@ -162,17 +167,40 @@ function refOf(letter, order) {
 const [CHARACTER, BESIDE] = [6.2, 110];
 
 /**
- * Name of a panel above its left end, as much of it as has room.
- * @param {{name: string, colour: string}} panel
- * @param {number} x @param {number} y parts of the picture
- * @param {number} width [pixels]
+ * Names of panels in lines that have room, and the height above each panel that the longest needs [pixels].
+ * @param {{name: string}[]} panels
+ * @param {number} width of a panel [pixels]
  */
-function nameOf({ name, colour }, x, y, width) {
+function namesOf(panels, width) {
   const most = Math.max(8, Math.floor((width - BESIDE) / CHARACTER));
-  const brief = name.length > most ? `${name.slice(0, most - 1)}…` : name;
+  const lines = panels.map(({ name }) => linesOf(name, most));
+  const further = Math.max(1, ...lines.map(({ length }) => length)) - 1;
+  return { texts: lines.map((one) => one.join("<br>")), height: NAME_PX + LINE_PX * further };
+}
+
+/**
+ * Lines of a text, broken between words, and within words that are longer than a line.
+ * @param {string} text
+ * @param {number} most characters of a line
+ */
+export function linesOf(text, most) {
+  /** @type {string[]} */
+  const lines = [];
+  const parts = text.split(" ").flatMap((word) => word.match(new RegExp(`.{1,${most}}`, "gu")) ?? [""]);
+  for (const part of parts) {
+    const last = lines.at(-1);
+    if (last !== undefined && last.length + 1 + part.length <= most)
+      lines[lines.length - 1] = `${last} ${part}`;
+    else lines.push(part);
+  }
+  return lines;
+}
+
+/** Note of a name above the left end of a panel. @param {string} text @param {string} mark its colour @param {number} x @param {number} y parts of the picture */
+function noteOf(text, mark, x, y) {
   return {
-    text: brief,
-    mark: colour,
+    text,
+    mark,
     xref: "paper",
     yref: "paper",
     x,

@@ -3,7 +3,8 @@
 
 import { get } from "../data/api.js";
 import { largestShown } from "../data/decimation.js";
-import { frames } from "../data/snapshots.js";
+import { equilibrium } from "../data/equilibrium.js";
+import { frames, snapshotTimes } from "../data/snapshots.js";
 import { number, shown, title } from "../data/units.js";
 import { canvas, draw, laidOut } from "../draw/plots.js";
 import { TimeLine } from "../draw/time-line.js";
@@ -13,7 +14,7 @@ import { describe, drawSpectrogram, largestOf, RANGES, spectrogramOf } from "../
 import { StringPlayer } from "../point/string-player.js";
 import { fill, h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
-import { panelsOverTime } from "./panels.js";
+import { panelsOver } from "./panels.js";
 
 /** @typedef {import("./comparison.js").Comparison} Comparison */
 /** @typedef {import("./comparison.js").Compared} Compared */
@@ -91,22 +92,10 @@ async function snapshotsThere(comparison, point) {
   // The service would refuse, which the browser writes of.
   if (!point.detail.scenario.recording.snapshots)
     throw new Lacking("it recorded no snapshots of the whole string (recording.snapshots)");
-  const [snapshots, statics] = await Promise.all([
-    comparison.table(point, "snapshots", { max_frames: 1 }),
-    comparison.table(point, "statics"),
-  ]);
-  const { snapshots: count, nodes, first, interval } = snapshots.attributes;
-  // One was served, so that the interval is that of all.
-  return {
-    there: {
-      names: Object.keys(snapshots.columns),
-      count,
-      nodes,
-      first,
-      interval: interval / Math.max(1, count),
-    },
-    statics: statics.columns,
-  };
+  /** @type {Parameters<typeof equilibrium>[0]} */
+  const table = (name, query) => comparison.table(point, name, query);
+  const [times, statics] = await Promise.all([snapshotTimes(table), equilibrium(table)]);
+  return { there: { ...times, nodes: statics.node.length }, statics };
 }
 
 /** Contacts over depth and time. @param {HTMLElement} place @param {Comparison} comparison */
@@ -190,7 +179,7 @@ export async function drawEnds(place, comparison) {
     panels.filter(({ scale }) => (scale === "torque") !== isSpeed),
   );
   await laidOut(place, comparison.signal);
-  const { traces, layout } = panelsOverTime(place, [...speeds, ...torques]);
+  const { traces, layout } = panelsOver(place, [...speeds, ...torques]);
   const names = [...new Set(sources.values())];
   if (names.length === 1)
     comparison.says.push(names[0] === "history" ? "From the recorded histories." : "From the snapshots.");

@@ -137,7 +137,7 @@ class ShownComparison {
   #controls = h("div", { class: "controls" });
   #lacking = h("div", { class: "lacking", role: "status", "aria-label": "What is missing" });
   #caption = h("figcaption", {});
-  #tabs = h("nav", { class: "tabs", "aria-label": "What is compared" });
+  #tabs = Object.entries(VIEWS).map(([name, entry]) => h("a", { "data-view": name }, entry.name));
   #loading = h("p", { class: "soft", role: "status" }, "Loading…");
   #taken = snippets(() => comparisonLines(this.#choices, this.#ticks.names(), this.#sources));
   /** Ends when the view is drawn anew. */
@@ -154,6 +154,7 @@ class ShownComparison {
     this.#linkTo = linkTo;
     this.#signal = signal;
     const { view, query } = choices;
+    this.#tabs.find((tab) => tab.dataset.view === view)?.setAttribute("aria-current", "page");
     this.#place = placeOf(view);
     this.#ticks = quantityTicks(query.get("profiles") ?? PROFILES, (names) =>
       this.#change({ profiles: names.join(",") }),
@@ -178,7 +179,7 @@ class ShownComparison {
     );
     return [
       h("div", { style: "height:1rem" }),
-      this.#tabs,
+      h("nav", { class: "tabs", "aria-label": "What is compared" }, this.#tabs),
       h(
         "section",
         { class: "panel", "aria-label": "Picture" },
@@ -193,7 +194,7 @@ class ShownComparison {
 
   /** Draws all parts. */
   draw() {
-    this.#drawTabs();
+    this.#linkTabs();
     this.#drawControls();
     attend(this.#redraw(), this.#signal);
   }
@@ -207,7 +208,7 @@ class ShownComparison {
     }
     keep(changes);
     rememberComparison(currentRoute().query);
-    this.#drawTabs();
+    this.#linkTabs();
     this.#taken.dispatchEvent(new Event("redraw"));
   }
 
@@ -218,17 +219,9 @@ class ShownComparison {
     attend(this.#redraw(), this.#signal);
   }
 
-  #drawTabs() {
-    fill(
-      this.#tabs,
-      Object.entries(VIEWS).map(([name, entry]) =>
-        h(
-          "a",
-          { href: this.#linkTo(name), "aria-current": name === this.#choices.view && "page" },
-          entry.name,
-        ),
-      ),
-    );
+  /** Links the tabs to the other views with the present choices. */
+  #linkTabs() {
+    for (const tab of this.#tabs) tab.setAttribute("href", this.#linkTo(tab.dataset.view ?? ""));
   }
 
   #drawControls() {

@@ -3,6 +3,7 @@
 import { valueAtTime } from "../data/at-time.js";
 import { spectrumRange } from "../data/motion-requests.js";
 import { partsOf } from "../data/string-parts.js";
+import { signRules } from "../data/signs.js";
 import { label, number, say, shown, suitedUnit, title, unit } from "../data/units.js";
 import {
   holeTrace,
@@ -15,17 +16,19 @@ import {
 import { draw, laidOut } from "../draw/plots.js";
 import { sayTrack } from "../draw/string-track.js";
 import { timeDots } from "../draw/time-line.js";
-import { ACCOUNTS, ledger, scaled } from "../point/energy.js";
+import { ACCOUNTS, floorOf, HELD, ledger, scaled } from "../point/energy.js";
 import { drawProfiles, nodeDepths, reading, tableOf } from "../point/profiles.js";
 import { h } from "../ui/dom.js";
 import { each, Lacking, noteNode } from "./comparison.js";
-import { largestFirst, panelsInPlane, panelsOverTime } from "./panels.js";
+import { largestFirst, panelsInPlane, panelsOver } from "./panels.js";
 import { drawContactMaps, drawEnds, drawSpectrograms, drawStrings } from "./side-by-side.js";
 import { drawAccuracy, drawCost, drawEffects, drawModes, drawStatistics } from "./tables.js";
 import { drawWells } from "./wells.js";
 
 /** Samples of a line over time, and of an orbit in its panel, which is a part of the screen. */
 const [SHOWN, OF_ORBIT] = [3000, 2000];
+/** Room above compared spectra, as a part of their largest amplitude. */
+const OF_NAMES = 0.2;
 /** Clearances that differ by less are one [m]. */
 const SAME_CLEARANCE = 1e-6;
 /** Part of a depth below which the ends of two strings are one. */
@@ -163,6 +166,7 @@ async function drawQuantities(place, comparison) {
   const strings = drawable.map(({ detail }) => detail.scenario.string.sections);
   const isOne = new Set(strings.map((sections) => JSON.stringify(sections))).size === 1;
   if (isOne) comparison.says.push(sayTrack(partsOf(strings[0])));
+  comparison.says.push(signRules(profiles));
   const track = isOne ? { parts: partsOf(strings[0]), nodes: [] } : null;
   return drawProfiles(place, profiles, drawable, track, comparison.signal);
 }
@@ -249,7 +253,7 @@ async function drawHistories(place, comparison) {
 async function drawOverTime(place, { window, signal }, found, yaxis, shows) {
   await laidOut(place, signal);
   const panels = found.map(([point, trace]) => ({ ...point, traces: [trace], scale: "", yaxis }));
-  const { traces, layout } = panelsOverTime(place, panels);
+  const { traces, layout } = panelsOver(place, panels);
   return draw(
     place,
     traces,
@@ -306,14 +310,33 @@ async function drawSpectra(place, comparison) {
     comparison.says.push(
       `Shaded: frequencies that the time steps${isAlike ? "" : ` of point ${least[0].number}`} do not resolve, above ${say("frequency", least[1].attributes.resolved_hz)}${isAlike ? "" : ", the lowest of all"}.`,
     );
-  const traces = found.map(([point, spectrum]) =>
-    spectrumTrace(spectrum, { color: point.colour, dash: point.dash }, point.name),
+  await laidOut(place, comparison.signal);
+  const isLog = comparison.query.get("amplitude") === "log";
+  const common = spectrumLayout(
+    found.map(([, table]) => ({ table })),
+    isLog,
   );
-  const layout = spectrumLayout(
-    found.map(([point, table]) => ({ table, name: String(point.number) })),
-    comparison.query.get("amplitude") === "log",
+  const drawn = found.map(([point, spectrum]) =>
+    spectrumTrace(spectrum, { color: point.colour }, point.name),
   );
-  return draw(place, largestFirst(traces), { ...layout, shows: range }, comparison.signal);
+  const largest = Math.max(...drawn.flatMap(({ y }) => y.map((value) => value ?? 0)));
+  // The highest lines have room for their frequencies.
+  const yaxis = { ...common.yaxis, ...(isLog ? {} : { range: [0, (1 + OF_NAMES) * largest] }) };
+  const panels = found.map(([point], order) => ({ ...point, traces: [drawn[order]], scale: "", yaxis }));
+  const { traces, layout } = panelsOver(place, panels, common.xaxis);
+  const lines = found.flatMap(([, table], order) =>
+    spectrumLayout([{ table }], isLog).annotations.map((note) => ({
+      ...note,
+      yref: order ? `y${order + 1}` : "y",
+    })),
+  );
+  const annotations = [...layout.annotations, ...lines];
+  return draw(
+    place,
+    traces,
+    { ...layout, annotations, shapes: common.shapes, shows: range },
+    comparison.signal,
+  );
 }
 
 /** Highest frequency of compared spectra [Hz]. @param {{query: URLSearchParams, points: Compared[]}} comparison */
@@ -339,26 +362,45 @@ async function drawEnergy(place, comparison) {
     ledger((await comparison.table(point, "energy")).columns),
   );
   const accounts = [...new Set(found.flatMap(([, one]) => one.accounts))];
-  const { symbol, size } = suitedUnit(
-    "kinetic",
-    found.flatMap(([, one]) => one.accounts.map(one.change)),
+  const { symbol, size } = unit("kinetic");
+  const changes = found.map(([, one]) =>
+    accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
   );
-  const traces = found.map(([point, one]) => ({
+  const sizes = changes.flat().map((change) => Math.abs(change ?? 0));
+  const floor = 10 ** floorOf(sizes);
+  const traces = found.map(([point], order) => ({
     type: "bar",
+    orientation: "h",
     name: point.name,
     showlegend: true,
-    x: accounts.map(label),
-    y: accounts.map((name) => (one.accounts.includes(name) ? one.change(name) / size : null)),
+    x: changes[order].map((change) => change && Math.max(floor, Math.abs(change))),
+    y: accounts.map(label),
     marker: { color: point.colour },
-    describe: (/** @type {{x: string, y: number}} */ { x, y }) => `${x}: ${number(y)} ${symbol}`,
+    text: changes[order].map((change, row) =>
+      change === null ? "" : `${label(accounts[row])}: ${number(change)} ${symbol}`,
+    ),
   }));
+  const largestOf = (/** @type {number} */ row) => Math.max(...changes.map((one) => Math.abs(one[row] ?? 0)));
+  const order = accounts.map((_, row) => row).sort((a, b) => largestOf(a) - largestOf(b));
+  const lost = found.flatMap(([point], which) =>
+    HELD.filter((name) => (changes[which][accounts.indexOf(name)] ?? 0) < 0).map(
+      (name) => `${name} energy of point ${point.number}`,
+    ),
+  );
+  comparison.says.push(
+    `Sizes of the changes over the run${lost.length ? `; negative: ${lost.join(", ")}` : ""}.`,
+  );
   return draw(
     place,
     traces,
     {
       shows: "",
-      xaxis: { title: "" },
-      yaxis: { title: `change over the run [${symbol}]`, quantity: "kinetic", size },
+      xaxis: {
+        title: `energy [${symbol}], logarithmic`,
+        type: "log",
+        range: [floor, Math.max(floor, ...sizes) * 10 ** 0.1],
+      },
+      yaxis: { title: "", categoryarray: order.map((row) => label(accounts[row])) },
     },
     comparison.signal,
   );

@@ -1,8 +1,9 @@
 // Compared wells in space, each string in the colour of its point or all by a quantity on one scale.
 
 import { label } from "../data/units.js";
+import { onNodes } from "../data/well-frames.js";
 import { QUANTITIES, tableOf } from "../point/profiles.js";
-import { exaggeration, LEGEND, onNodes, saysExaggeration } from "../point/well.js";
+import { exaggeration, LEGEND, saysExaggeration } from "../point/well.js";
 import { WellPictures } from "../point/well-pictures.js";
 import { fill, h } from "../ui/dom.js";
 import { each } from "./comparison.js";

@@ -98,8 +98,9 @@ async function ask(method, url, body, signal, read = (answer) => answer.json()) 
   if (body !== undefined) headers["Content-Type"] = "application/json";
   let answer;
   try {
-    answer = await ((method === "GET" && preload.sent(url)) ||
-      fetch(url, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
+    const text = body === undefined ? undefined : JSON.stringify(body);
+    const early = method === "GET" ? preload.sent(url) : preload.posted(url, text);
+    answer = await (early ?? fetch(url, { method, headers, body: text, signal }));
   } catch (error) {
     if (signal?.aborted) throw error;
     lose();

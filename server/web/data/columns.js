@@ -1,6 +1,6 @@
 // Numbers of a column: with equal decimals, so that their points are below each other, and their places in its range.
 
-import { number, THOUSANDS } from "./units.js";
+import { number, signed, THOUSANDS } from "./units.js";
 
 /** Decimals by which a column may have more than its largest number needs, so that small ones keep digits. */
 const FURTHER = 3;
@@ -50,7 +50,7 @@ function decimalsOf(value, digits) {
 
 /** @param {number} value @param {number} decimals @param {number} largest of the column */
 function grouped(value, decimals, largest) {
-  const text = value.toFixed(decimals);
+  const text = signed(value.toFixed(decimals));
   if (largest < 1e4) return text;
   const [whole, part] = text.split(".");
   const apart = whole.replace(/\B(?=(\d{3})+$)/g, THOUSANDS);

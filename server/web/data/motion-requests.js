@@ -3,6 +3,13 @@
 /** Samples in a picture: two for each pixel of a screen of usual width. */
 const SHOWN = 2500;
 
+/** Columns of the equilibrium that place a node along the hole and across it. */
+export const ALONG = "node,measured_depth,low_side_angle,clearance";
+/** The further columns for a picture in space. */
+export const IN_SPACE = "north,east,true_vertical_depth,u,v";
+/** Names and times of snapshots: one of a single node, so that its interval is that of all. */
+export const TIMES = { node: 1, max_frames: 1 };
+
 /** Frequencies up to which full spectra are shown [Hz]. */
 const RANGES = ["5", "20", "50", "100"];
 
@@ -19,8 +26,22 @@ const RANGES = ["5", "20", "50", "100"];
  */
 export function nodeTables(scenario, query) {
   return [
-    ["statics", { fields: "node,measured_depth,low_side_angle,clearance" }],
+    ["statics", { fields: ALONG }],
     ["orbit", { ...selectedNode(scenario, query), max_points: SHOWN }],
+  ];
+}
+
+/**
+ * Tables that a string in motion needs before its snapshots; none if it has no snapshots.
+ * @param {any} scenario
+ * @returns {Asked[]}
+ */
+export function stringTables({ recording }) {
+  if (!recording.snapshots) return [];
+  return [
+    ["snapshots", TIMES],
+    ["statics", { fields: ALONG }],
+    ["statics", { fields: IN_SPACE }],
   ];
 }
 

@@ -1,12 +1,13 @@
 // The snapshots of a point: how many there are, and their values by time and node.
 
 import { Problem } from "./api.js";
+import { ALONG, TIMES } from "./motion-requests.js";
 import { getArrays } from "./npz.js";
 
 /** Nodes of all snapshots together that the page takes at once; of more every k-th snapshot. */
 const TAKEN = 450_000;
-/** Motion that is requested first [s], and how many times longer each further part is. */
-const FIRST_S = 1,
+/** Motion that is requested first [s], little enough for a slow network, and the growth of each further part. */
+const FIRST_S = 0.25,
   GROWTH = 4;
 /** Part of an interval within which a time counts as the one of a snapshot, as in the service. */
 const NEAR = 1e-2;
@@ -27,6 +28,16 @@ const NEAR = 1e-2;
  */
 
 /**
+ * Names and times of a point's snapshots.
+ * @param {(name: string, query: Record<string, any>) => Promise<any>} table a table of the point's result
+ */
+export async function snapshotTimes(table) {
+  const { columns, attributes } = await table("snapshots", TIMES);
+  const { snapshots: count, first, interval } = attributes;
+  return { names: Object.keys(columns), count, first, interval: interval / Math.max(1, count) };
+}
+
+/**
  * Describes a point's snapshots; `null` if it has none.
  * @param {Source} source
  * @returns {Promise<{names: string[], nodes: number, count: number, first: number, interval: number} | null>}
@@ -34,10 +45,11 @@ const NEAR = 1e-2;
 export async function snapshotsOf(source) {
   if (!source.point.scenario.recording.snapshots) return null;
   try {
-    const { columns, attributes } = await source.table("snapshots", { max_frames: 1 });
-    // One was served, so that the interval is that of all.
-    const { snapshots: count, nodes, first, interval } = attributes;
-    return { names: Object.keys(columns), nodes, count, first, interval: interval / Math.max(1, count) };
+    const [times, along] = await Promise.all([
+      snapshotTimes(source.table),
+      source.table("statics", { fields: ALONG }),
+    ]);
+    return { ...times, nodes: along.columns.node.length };
   } catch (error) {
     if (error instanceof Problem && error.status === 404) return null;
     throw error;

@@ -190,6 +190,8 @@ export function sayParameters(values) {
     .join(", ");
 }
 
+/** Sign of negative numbers, as wide as a plus. */
+export const MINUS = "\u2212";
 /** Between thousands: a narrow space at which no line breaks. */
 export const THOUSANDS = "\u202f";
 /** Numbers from here on are written by powers of ten. */
@@ -203,14 +205,20 @@ const HUGE = 1e9;
 export function number(value, digits = 4) {
   const size = Math.abs(value);
   if (Number.isInteger(value) && size < 1e6) return grouped(String(value));
-  if (size !== 0 && (size < 1e-3 || size >= HUGE)) return value.toExponential(digits - 1).replace("e+", "e");
+  if (size !== 0 && (size < 1e-3 || size >= HUGE))
+    return signed(value.toExponential(digits - 1).replace("e+", "e"));
   return grouped(String(Number(value.toPrecision(digits))));
+}
+
+/** A number with the sign that the page writes. @param {string} text */
+export function signed(text) {
+  return text.replace(/^-/, MINUS);
 }
 
 /** @param {string} text of a number without an exponent */
 function grouped(text) {
-  const [whole, part] = text.split(".");
-  if (whole.replace("-", "").length < 5) return text;
+  const [whole, part] = signed(text).split(".");
+  if (whole.replace(MINUS, "").length < 5) return signed(text);
   const apart = whole.replace(/\B(?=(\d{3})+$)/g, THOUSANDS);
   return part === undefined ? apart : `${apart}.${part}`;
 }

@@ -34,6 +34,25 @@ export function nodeFrames(statics) {
   return frames;
 }
 
+/**
+ * A quantity at the nodes: of elements, the mean of both that a node joins.
+ * @param {any} columns
+ * @param {string} name
+ * @param {number} nodes
+ * @returns {(number | null)[]}
+ */
+export function onNodes(columns, name, nodes) {
+  const values = columns[name];
+  if (values.length === nodes) return values;
+  return Array.from({ length: nodes }, (_, node) => {
+    const [above, below] = [
+      values[Math.max(0, node - 1)] ?? null,
+      values[Math.min(values.length - 1, node)] ?? null,
+    ];
+    return above === null || below === null ? (above ?? below) : (above + below) / 2;
+  });
+}
+
 /** @param {Vector} a @param {number} of @param {Vector} b @param {number} and @returns {Vector} */
 function sum(a, of, b, and) {
   return [of * a[0] + and * b[0], of * a[1] + and * b[1], of * a[2] + and * b[2]];

@@ -1,6 +1,6 @@
 // Scale of the colours of a string: what they stand for, with the values at its ends.
 
-import { shown, unit } from "../data/units.js";
+import { shown, signed, unit } from "../data/units.js";
 import { h } from "../ui/dom.js";
 import { GRADIENT } from "./picture/colours.js";
 
@@ -15,7 +15,9 @@ import { GRADIENT } from "./picture/colours.js";
  */
 export function scaleWords(name, called, range) {
   const { symbol } = unit(name);
-  const [least, largest] = shown(name, range).map((value) => String(Number(Number(value).toPrecision(3))));
+  const [least, largest] = shown(name, range).map((value) =>
+    signed(String(Number(Number(value).toPrecision(3)))),
+  );
   return { text: `${called}${symbol ? ` [${symbol}]` : ""}`, least, largest };
 }
 

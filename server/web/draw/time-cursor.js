@@ -19,6 +19,8 @@ export class TimeCursor {
   /** @type {Set<(time: number | null) => void>} */
   #listeners = new Set();
   #keepSoon;
+  /** Whether the link still has another time. */
+  #isDue = false;
 
   /**
    * @param {{query: URLSearchParams, keep: (changes: Record<string, string | null>) => void}} link which holds the time
@@ -26,11 +28,14 @@ export class TimeCursor {
    */
   constructor({ query, keep }, signal) {
     this.#time = timeInLink(query);
-    this.#keepSoon = debounced(
-      () => keep({ time: this.#time === null ? null : String(Number(this.#time.toFixed(DECIMALS))) }),
-      REST_MS,
-      signal,
-    );
+    const keepNow = () => {
+      if (!this.#isDue) return;
+      this.#isDue = false;
+      keep({ time: this.#time === null ? null : String(Number(this.#time.toFixed(DECIMALS))) });
+    };
+    this.#keepSoon = debounced(keepNow, REST_MS, signal);
+    // A view that is opened meanwhile begins at this time.
+    for (const event of ["pointerdown", "click"]) addEventListener(event, keepNow, { capture: true, signal });
   }
 
   /** The time [s]; null until one is chosen. */
@@ -42,6 +47,7 @@ export class TimeCursor {
   move(time) {
     if (time === this.#time || !Number.isFinite(time)) return;
     this.#time = time;
+    this.#isDue = true;
     for (const listener of this.#listeners) listener(time);
     this.#keepSoon();
   }

@@ -7,7 +7,8 @@ import { fill, h } from "../ui/dom.js";
 
 const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
 const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
-const HELD = ["kinetic", "stored"];
+/** Accounts of energy that can be gained or lost. */
+export const HELD = ["kinetic", "stored"];
 
 /** Energies below this part of the largest are not drawn. */
 const LEAST = 1e-9;

@@ -2,12 +2,13 @@
 
 import { roomyRange } from "../data/columns.js";
 import { nodeTables } from "../data/motion-requests.js";
+import { signRules } from "../data/signs.js";
 import { partsOf } from "../data/string-parts.js";
 import { label, meaning, number, say, shown, title, unit } from "../data/units.js";
 import { DepthCursor, nearest } from "../draw/depth-cursor.js";
 import { canvas, draw, laidOut, LINES } from "../draw/plots.js";
 import { AXIS, recordedAt, sayTrack, TRACK, trackAxis, trackTraces } from "../draw/string-track.js";
-import { h } from "../ui/dom.js";
+import { fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
 import { python } from "../ui/snippets.js";
@@ -120,7 +121,7 @@ export async function drawProfiles(place, names, points, track, signal) {
           legendgroup: String(order),
           showlegend: column === 0 && points.length > 1,
           line: { color: point.colour, dash: point.dash, width: 1.4 },
-          describe: (/** @type {{x: number}} */ { x }) => number(x).replace("-", "−"),
+          describe: (/** @type {{x: number}} */ { x }) => number(x),
         },
       ];
     }),
@@ -224,6 +225,7 @@ export function profiles(context) {
     reading(ticks.names(), (name) => tables[tableOf(name)], depth, points),
   );
   const begin = generations();
+  const caption = h("figcaption", {});
   const { scenario } = context.point;
   const parts = partsOf(scenario.string.sections);
 
@@ -237,6 +239,7 @@ export function profiles(context) {
       ...[...needed].map(async (table) => (tables[table] ??= await context.table(table))),
     ]);
     if (!isNewest()) return;
+    fill(caption, `${sayTrack(parts)} Dots: recorded nodes. ${signRules(names)}`);
     await drawProfiles(
       place,
       names,
@@ -248,13 +251,7 @@ export function profiles(context) {
   }
 
   return {
-    element: h(
-      "div",
-      {},
-      ticks.element,
-      h("figure", {}, scrolled(place), h("figcaption", {}, `${sayTrack(parts)} Dots: recorded nodes.`)),
-      cursor.element,
-    ),
+    element: h("div", {}, ticks.element, h("figure", {}, scrolled(place), caption), cursor.element),
     draw: redraw,
     request: () => {
       const asked = profileTables(ticks.names()).map(({ table, fields }) => ({

@@ -2,6 +2,7 @@
 
 import { Problem } from "../data/api.js";
 import { keptWindow } from "../data/motion-requests.js";
+import { signRules } from "../data/signs.js";
 import { frames, snapshotsOf } from "../data/snapshots.js";
 import { number, say, shown, title } from "../data/units.js";
 import { canvas, draw, LINES } from "../draw/plots.js";
@@ -160,7 +161,7 @@ function saySources(lines) {
 }
 
 /** Sentence about the torque at an end. */
-export const TORQUE = "The torque is that of the string's last element at that end.";
+export const TORQUE = `The torque is that of the string's last element at that end. ${signRules(["torque"])}`;
 
 /**
  * Sentence about its difference from the torque on bit.

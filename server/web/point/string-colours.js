@@ -3,7 +3,7 @@
 import { covered, largestShown, sampled } from "../data/decimation.js";
 import { frames, valueAt } from "../data/snapshots.js";
 import { amplitudes } from "../data/statistics.js";
-import { onNodes } from "./well.js";
+import { onNodes } from "../data/well-frames.js";
 
 /** @typedef {{value: (node: number) => number, range: [number, number], isMarked?: (node: number) => boolean}} Colours */
 

@@ -1,5 +1,6 @@
 // The string moving in its hole, played from the snapshots of a run; below it the contacts over depth and time, rotation and torque.
 
+import { equilibrium } from "../data/equilibrium.js";
 import { snapshotsOf } from "../data/snapshots.js";
 import { fill, h } from "../ui/dom.js";
 import { python } from "../ui/snippets.js";
@@ -24,9 +25,13 @@ export function string(context) {
   let names = [];
 
   async function redraw() {
+    if (!context.point.scenario.recording.snapshots) return drawWithout();
+    const placing = equilibrium(context.table);
+    // Files expire: the table is then missing as well.
+    placing.catch(() => {});
     const there = await snapshotsOf(context);
     if (!there) return drawWithout();
-    const statics = (await context.table("statics")).columns;
+    const statics = await placing;
     const map = contactMap(context);
     names = ["time", "node", "u", "v", "normal_force", "rotation_speed", "torque"].filter((name) =>
       there.names.includes(name),

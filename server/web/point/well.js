@@ -1,6 +1,7 @@
 // The view of a well in space with the string in it at rest, coloured by a quantity.
 
 import { label } from "../data/units.js";
+import { onNodes } from "../data/well-frames.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
 import { attend } from "../ui/notices.js";
@@ -114,23 +115,4 @@ export function exaggerationChoice(factor, onChange) {
 /** @param {string} whose @param {number} factor */
 export function saysExaggeration(whose, factor) {
   return `${whose} distance from the axis of the hole is drawn ${factor === 1 ? "to scale" : `${factor} times as large`}.`;
-}
-
-/**
- * A quantity at the nodes: of elements, the mean of both that a node joins.
- * @param {any} columns
- * @param {string} name
- * @param {number} nodes
- * @returns {(number | null)[]}
- */
-export function onNodes(columns, name, nodes) {
-  const values = columns[name];
-  if (values.length === nodes) return values;
-  return Array.from({ length: nodes }, (_, node) => {
-    const [above, below] = [
-      values[Math.max(0, node - 1)] ?? null,
-      values[Math.min(values.length - 1, node)] ?? null,
-    ];
-    return above === null || below === null ? (above ?? below) : (above + below) / 2;
-  });
 }

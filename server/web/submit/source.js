@@ -54,7 +54,7 @@ export class Source {
     this.#scenarios = scenarios;
     this.#on = on;
     this.#signal = signal;
-    this.#preset = start.preset ?? (start.scenario ? "" : "paper-200m-damped");
+    this.#preset = start.preset ?? (start.scenario ? "" : preload.PROPOSED.preset);
     this.#text = h("textarea", {
       class: "code",
       "aria-label": "Scenario as JSON",

@@ -48,11 +48,6 @@ const FIELDS = [
   "verify",
 ];
 const DRAWN = ["latin_hypercube", "sobol"];
-/** Parameters that are proposed. */
-const PROPOSED = {
-  flow_rate: { values: [0.01, 0.04, 0.06] },
-  mud_density: { from: 1200, to: 2100, count: 4 },
-};
 /** Rest of typing before the request is planned. */
 const REST_MS = 400;
 
@@ -154,7 +149,7 @@ class NewSweep {
     const isShown = accuracyWay(start.set?.accuracy) !== undefined;
     this.#accuracy = new Accuracy(isShown ? start.set?.accuracy : undefined, changed);
     this.#kept = new Kept(start.outputs, changed);
-    const axes = Object.entries(start.axes ?? (isGoneOn ? {} : PROPOSED));
+    const axes = Object.entries(start.axes ?? (isGoneOn ? {} : preload.PROPOSED.axes));
     this.#axes = new Rows(
       "axes",
       axes.map(([name, axis]) => ({ name, values: written(axis) })),

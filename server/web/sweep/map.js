@@ -2,6 +2,7 @@
 
 import { ends, layered } from "../data/grid-layers.js";
 import { theme } from "../data/settings.js";
+import { signRules } from "../data/signs.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { distinct, isText } from "../data/sweep-table.js";
 import { label, say, sayer, title, unit } from "../data/units.js";
@@ -237,6 +238,7 @@ export class SweepMap {
           ? "The dots are samples; colours and lines between them are interpolated. "
           : "Each cell has the colour of the sample in it. "),
       y !== undefined && isGrid && ringsPart(sweep.id, colour, { rows, values, ordinals }),
+      `${signRules([colour])} `,
       biases.say(colour),
       hidden ? ` ${hidden} are not positive and have no place on a logarithmic scale.` : "",
     );

@@ -1,9 +1,10 @@
 // The points of a sweep as rows: sorted, filtered, with a choice of columns. Only the rows in sight are in the page.
 
 import { csvOf } from "../data/csv.js";
+import { signRules } from "../data/signs.js";
 import { isUnsettled, SETTLING } from "../data/statistics.js";
 import { aligner, placeIn, rangeOf } from "../data/columns.js";
-import { meaning, nodeOfColumn, unit } from "../data/units.js";
+import { meaning, MINUS, nodeOfColumn, unit } from "../data/units.js";
 import { classWord } from "../draw/class-word.js";
 import { choice, debounced, download, fill, h } from "../ui/dom.js";
 import { generations } from "../ui/generations.js";
@@ -12,6 +13,7 @@ import { attend } from "../ui/notices.js";
 import { link } from "../ui/router.js";
 import { CLASS, sortable } from "./categories.js";
 import { preferred } from "./part.js";
+import { comparePart, tickedIn } from "./ticked.js";
 
 /** Significant digits of the largest number of a column. */
 const DIGITS = 5;
@@ -64,6 +66,7 @@ class PointTable {
   /** @type {(index: number) => boolean} */
   #doubts = () => false;
   #isScrolled = false;
+  #signs = h("p", { class: "small soft" });
   #compare = h("span", { style: "display:contents" });
 
   /** @param {Context} context */
@@ -109,7 +112,16 @@ class PointTable {
         "Save as CSV",
       ),
     );
-    this.element = h("div", {}, controls, this.#wrong, this.#columnsPart, this.#status, this.#scroller);
+    this.element = h(
+      "div",
+      {},
+      controls,
+      this.#wrong,
+      this.#columnsPart,
+      this.#status,
+      this.#scroller,
+      this.#signs,
+    );
   }
 
   /** Keeps choices in the link and shows the points by them. @param {Record<string, string | null>} choices */
@@ -146,6 +158,7 @@ class PointTable {
       this.#status,
       `${this.#rows.length === data.rows ? "" : `${this.#rows.length} of `}${data.rows} points`,
     );
+    this.#signs.textContent = signRules(asked);
     this.#drawCompare();
     fill(
       this.#header,
@@ -281,23 +294,7 @@ class PointTable {
 
   /** Draws the link to the comparison of the ticked points. */
   #drawCompare() {
-    const { id } = this.#context.sweep;
-    const ticked = this.#ticked;
-    const points = ticked.map((ordinal) => `${id}:${ordinal}`).join(",");
-    const full = ticked.length >= MOST ? ` (at most ${MOST})` : "";
-    fill(
-      this.#compare,
-      ticked.length
-        ? h(
-            "a",
-            {
-              class: "button",
-              href: link(["compare"], { points, view: "profiles", node: nodeOfColumn(this.#sorted) }),
-            },
-            `Compare ${ticked.length} ${ticked.length === 1 ? "point" : "points"}${full}`,
-          )
-        : h("button", { disabled: true, title: "Tick the points to compare" }, "Compare"),
-    );
+    fill(this.#compare, comparePart(this.#context.sweep.id, this.#ticked, this.#sorted));
   }
 
   /** @param {string} name @param {number} index @param {number} ordinal */
@@ -378,15 +375,6 @@ class PointTable {
 }
 
 /**
- * Ordinals that a link ticks, each once.
- * @param {string} text such as `3,12`
- */
-export function tickedIn(text) {
-  const ordinals = text.split(",").map(Number);
-  return [...new Set(ordinals)].filter((ordinal) => Number.isInteger(ordinal) && ordinal > 0).slice(0, MOST);
-}
-
-/**
  * Order of points by their values in a column; gaps stand at the end in either direction.
  * @param {import("../data/sweep-table.js").Values} key
  * @param {boolean} isDown
@@ -419,7 +407,8 @@ export function conditions(text, known) {
       continue;
     }
     const [, name, sign, wanted] = parts;
-    const limit = Number(wanted);
+    // A number that is copied from the page has its minus sign.
+    const limit = Number(wanted.replace(MINUS, "-"));
     const { size } = unit(name);
     tests.push({
       name,

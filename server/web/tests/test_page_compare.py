@@ -265,11 +265,12 @@ def test_compared_wells_are_coloured_on_one_scale(opened: Opens, named: Sweep, t
 def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=spectrum&depth=57.73&range=100")
     picture = drawn(page, "Full spectra")
-    names = picture.evaluate("place => place.picture.layout.annotations.map(({ text }) => text)")
+    read = "place => place.picture.layout.annotations.map(({ text, yref }) => [yref, text])"
+    names = [(where, text) for where, text in picture.evaluate(read) if where != "paper"]
     own = [named.point(number).spectrum(node=49, time=(0.1, 0.5), window="hann", range_hz=100) for number in (1, 2)]
     lines = [
-        f"{number}: {'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz"
-        for number, table in enumerate(own, 1)
+        (panel, f"{'+' if peak['frequency'] > 0 else MINUS}{abs(peak['frequency']):.2f} Hz")
+        for panel, table in zip(("y", "y2"), own, strict=True)
         for peak in table.attributes["peaks"]
     ]
     assert names
@@ -278,14 +279,29 @@ def test_compared_spectra_name_lines_and_shade_what_is_not_resolved(opened: Open
     resolved = min(table.attributes["resolved_hz"] for table in own)
     assert shades[:1] == pytest.approx([resolved] if resolved < 100 else [])
     assert len(page.locator("figcaption", has_text="Shaded:").all()) == (resolved < 100)
+    # Each has a panel of its own, on one scale, so that none hides another.
+    panels = picture.evaluate("""place => ["yaxis", "yaxis2"].map(name => {
+        const { range, own } = place.picture.axis(name);
+        return { range: [...range], domain: own.domain };
+    })""")
+    assert panels[0]["range"] == panels[1]["range"]
+    assert panels[0]["domain"][0] > panels[1]["domain"][1]
 
 
 def test_energy_is_compared_over_time(opened: Opens, named: Sweep) -> None:
     page = opened(f"#/compare?points={key(named)},{key(named, 2)}&view=energy")
     picture = drawn(page, "^Energy$")
-    page.get_by_label("Shows", exact=True).select_option("kinetic")
     read = "place => place.picture.traces.map(({ x, y }) => ({ x: [...x], y: [...y] }))"
     table = named.point(2).energy()
+    # All accounts, the smallest too, are bars on a logarithmic scale.
+    bars = picture.evaluate(read)[1]
+    assert picture.evaluate("place => place.picture.axis('xaxis').isLog")
+    friction = bars["x"][bars["y"].index("dissipated by friction")]
+    assert friction == pytest.approx(
+        float(table["dissipated_friction"][-1] - table["dissipated_friction"][0]), rel=1e-6
+    )
+    assert min(bars["x"]) > 0
+    page.get_by_label("Shows", exact=True).select_option("kinetic")
     until(page, lambda: len(picture.evaluate(read)[0]["x"]) == len(table["time"]))
     np.testing.assert_allclose(picture.evaluate(read)[1]["x"], table["time"], rtol=1e-6)
     assert "account=kinetic" in page.url
@@ -489,7 +505,7 @@ def test_keys_read_the_profiles_of_all_points_at_a_depth(opened: Opens, named: S
         text = reading.get_by_role("paragraph").nth(number - 1).inner_text()
         words = re.fullmatch(rf"{number}: .*: effective tension (\S+) kN · .*side force \S+ k?N", text)
         assert words is not None, text
-        assert float(words.group(1)) == pytest.approx(tension, rel=1e-3)
+        assert float(words.group(1).replace(MINUS, "-")) == pytest.approx(tension, rel=1e-3)
     # The link holds where the cursor is.
     other = opened(f"#{page.url.partition('#')[2]}")
     copy = drawn(other, "Profiles")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Request, Route, expect
 
 from browsing import Opens, requested, until
 
@@ -35,6 +36,35 @@ def refused(opened: Opens, troubles: list[str]) -> Iterator[None]:
     del opened  # It is requested so that this ends before its pages do.
     yield
     troubles[:] = [text for text in troubles if "422" not in text]
+
+
+def test_the_plan_is_requested_once_before_the_form_is_loaded(opened: Opens) -> None:
+    page = opened("#/nowhere")
+    asked: list[str] = []
+    held: list[Route] = []
+
+    def note(request: Request) -> None:
+        if request.method == "POST" and "dry_run" in request.url:
+            asked.append(request.post_data or "")
+
+    page.on("request", note)
+    page.route("**/submit/view.js", lambda route: held.append(route))
+    address = page.url.replace("#/nowhere", "#/new")
+    for link in (address, None):
+        # The second time it is the request that the form has put into the link.
+        link = link or page.url
+        asked.clear()
+        page.goto("about:blank")
+        page.goto(link, wait_until="commit")
+        until(page, lambda: len(held) == 1 and len(asked) == 1)
+        held.pop().continue_()
+        planned(page)
+        assert len(asked) == 1
+        assert requested(page) == json.loads(asked[0])
+    # Another request than the one of the link is planned anew.
+    page.get_by_role("textbox", name="Name", exact=True).fill("other")
+    until(page, lambda: len(asked) == 2)
+    planned(page)
 
 
 def test_the_mesh_is_a_rule_a_factor_or_lengths(opened: Opens) -> None:

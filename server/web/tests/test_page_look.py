@@ -7,7 +7,7 @@ import re
 
 from playwright.sync_api import Route, expect
 
-from browsing import Opens, drawn
+from browsing import MINUS, Opens, drawn
 from drillsweep import Sweep
 
 
@@ -82,3 +82,55 @@ def test_the_list_names_the_varied_parameters(opened: Opens, named: Sweep) -> No
     expect(row.locator(".varied")).to_have_text("Flow rate \N{MULTIPLICATION SIGN} mud density")
     # A service that names none leaves the line out.
     expect(page.locator("tr[data-sweep] .varied")).to_have_count(1)
+
+
+def test_names_above_compared_points_are_whole_on_a_phone(opened: Opens, named: Sweep) -> None:
+    points = f"{named.id}:1,{named.id}:8"
+    for view, name in (("orbit", "Orbits"), ("history", "Histories"), ("spectrum", "Full spectra")):
+        page = opened(f"#/compare?points={points}&view={view}", viewport={"width": 390, "height": 800})
+        picture = drawn(page, name)
+        read = """place => {
+            const pen = document.createElement("canvas").getContext("2d");
+            pen.font = `12px ${getComputedStyle(place).fontFamily}`;
+            const { layout, frame } = place.picture;
+            return layout.annotations.filter(({ mark }) => mark).map(({ text, x }) => ({
+                text: text.replaceAll("<br>", " "),
+                end: frame.left + x * (frame.right - frame.left) + 28
+                    + Math.max(...text.split("<br>").map(line => pen.measureText(line).width)),
+                width: place.clientWidth,
+            }));
+        }"""
+        shown = picture.evaluate(read)
+        assert len(shown) == 2
+        for number, one in enumerate(shown, 1):
+            assert re.match(rf"{number}: flow rate .* m³/s, mud density .* kg/m³, rotation speed .* rpm$", one["text"])
+            assert one["end"] <= one["width"]
+
+
+def test_points_that_are_dragged_over_in_the_scatter_are_compared(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=scatter&x=flow_rate&y=mud_density&colour=friction_coefficient_max")
+    picture = drawn(page, "mud density against flow rate")
+    page.get_by_role("button", name="Choose points").click()
+    area = picture.locator(".area").first.bounding_box()
+    assert area is not None
+    page.mouse.move(area["x"] + 1, area["y"] + 1)
+    page.mouse.down()
+    page.mouse.move(area["x"] + 0.5 * area["width"], area["y"] + 0.5 * area["height"], steps=4)
+    page.mouse.up()
+    # The points of the lesser flow rate and the denser mud, at either speed.
+    expect(page.get_by_text("2 points are within")).to_be_visible()
+    page.get_by_role("link", name="Compare 2 points").click()
+    rows = page.get_by_role("table", name="Points compared").get_by_role("row")
+    expect(rows).to_have_count(2)
+    expect(rows.filter(has_text="flow rate 0.01 m³/s, mud density 1800 kg/m³")).to_have_count(2)
+
+
+def test_negative_numbers_have_one_sign_and_its_rule(opened: Opens, named: Sweep) -> None:
+    page = opened(f"#/sweeps/{named.id}?view=table&columns=ordinal,torque_top,tension_top")
+    cell = page.locator(".rows tbody tr:not(.gap)").first.locator("td.number").nth(1)
+    expect(cell).to_have_text(re.compile(rf"^{MINUS}[\d.]+$"))
+    expect(page.get_by_text("Torque is negative if it opposes clockwise rotation.")).to_be_visible()
+    page = opened(f"#/sweeps/{named.id}/points/1?profiles=effective_tension,torque")
+    drawn(page, "Profiles")
+    expect(page.get_by_text("Tension is positive, compression negative. Torque is")).to_be_visible()
+    expect(page.locator("main")).not_to_contain_text(re.compile(r"(^|\s)-\d"))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Error, Route, expect
 
-from browsing import Opens, clock, drawn, pixels, requested, scene, trace, until
+from browsing import MINUS, Opens, clock, drawn, pixels, requested, scene, trace, until
 from drillsweep import Client, Sweep
 from service import SHORT
 
@@ -239,11 +239,11 @@ def test_the_string_moves_before_all_snapshots_have_arrived(opened: Opens, serve
     def reach() -> float:
         return float(slider.get_attribute("max") or 0)
 
-    assert reach() == pytest.approx(1.0)
+    assert reach() == pytest.approx(0.28)
     expect(page.get_by_text("up to 6 s on the way")).to_be_visible()
     # It waits at the end of what is there, and goes on as more arrives.
     page.get_by_role("button", name="Play").click()
-    until(page, lambda: clock(page) == pytest.approx(1.0))
+    until(page, lambda: clock(page) == pytest.approx(0.28))
     expect(page.get_by_role("button", name="Pause")).to_be_visible()
     release()
     until(page, lambda: reach() == pytest.approx(5.96))
@@ -295,7 +295,8 @@ def test_one_time_cursor_moves_all_views_of_a_point(opened: Opens, recorded: Swe
     page.mouse.up()
     until(page, lambda: at(0.13, 0.02))
     until(page, lambda: pixels(picture) != then)
-    expect(page.get_by_text(re.compile(r"^At 0\.1\d* s: speed, bit -?[\d.]+ rad/s · torque, bit"))).to_be_visible()
+    read = re.compile(rf"^At 0\.1\d* s: speed, bit {MINUS}?[\d.]+ rad/s · torque, bit")
+    expect(page.get_by_text(read)).to_be_visible()
     # Arrow keys move it by small steps.
     before = clock(page)
     lines["Contact"].focus()
@@ -340,3 +341,36 @@ def test_compared_points_are_read_at_one_time(opened: Opens, sweep: Sweep) -> No
     until(page, lambda: "time=0.32" in page.url)
     page.get_by_role("link", name="Orbits").click()
     expect(drawn(page, "Orbits").locator(".time-dots i")).to_have_count(2)
+
+
+def test_a_tab_that_is_held_down_while_the_link_takes_the_time_opens(opened: Opens, sweep: Sweep) -> None:
+    points = f"{sweep.id}:1,{sweep.id}:2"
+    for view, name, tab, other in [
+        (f"compare?points={points}&view=history&time=0.3", "Histories", "Orbits", "view=orbit"),
+        (f"sweeps/{sweep.id}/points/1?view=motion&time=0.3", "History of node", "Spectrogram", "view=spectrogram"),
+        (f"sweeps/{sweep.id}/points/1?view=motion&time=0.3", "History of node", "Next →", "points/2"),
+    ]:
+        page = opened(f"#/{view}")
+        drawn(page, name)
+        page.get_by_role("link", name=tab, exact=True).hover()
+        page.mouse.down()
+        page.get_by_role("slider", name=f"Time cursor: {name}").dispatch_event("keydown", {"key": "PageUp"})
+        expect(page).not_to_have_url(re.compile(r"time=0\.3(&|$)"))
+        page.mouse.up()
+        expect(page).to_have_url(re.compile(re.escape(other)))
+        assert "time=0.3" in page.url
+
+
+def test_a_view_opened_at_once_after_a_move_of_the_time_cursor_begins_at_its_time(
+    opened: Opens, recorded: Sweep
+) -> None:
+    page = opened(f"#/sweeps/{recorded.id}/points/1?view=motion&time=0.3")
+    drawn(page, "History of node")
+    page.get_by_role("slider", name="Time cursor: History of node").focus()
+    # Both are events of one task, so that no time passes between them.
+    page.evaluate("""() => {
+        document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "Home", bubbles: true }));
+        document.querySelector("nav.tabs [data-view=spectrogram]").click();
+    }""")
+    drawn(page, "Spectrogram of node")
+    assert re.search(r"time=0(\.0\d*)?(&|$)", page.url)

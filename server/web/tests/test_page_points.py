@@ -240,7 +240,9 @@ def test_a_profile_is_read_as_its_picture_says(opened: Opens, sweep: Sweep) -> N
             if re.fullmatch(rf"[-{MINUS}\d.]+", text)
         }
         said = re.search(r"effective tension (\S+) kN", str(reading.text_content()))
-        return said is not None and any(float(said.group(1)) == pytest.approx(value, rel=2e-4) for value in seen)
+        return said is not None and any(
+            float(said.group(1).replace(MINUS, "-")) == pytest.approx(value, rel=2e-4) for value in seen
+        )
 
     before = [reading.text_content()]
     for part in (0.31, 0.485, 0.62):
@@ -264,8 +266,10 @@ def test_keys_move_the_depth_cursor_of_profiles(opened: Opens, sweep: Sweep) -> 
         until(page, lambda: picture.evaluate(line) == [pytest.approx([depth, depth], rel=1e-6)])
         words = re.fullmatch(r"At (\S+) m: effective tension (\S+) kN · .*side force (\S+) k?N", reading.inner_text())
         assert words is not None, reading.inner_text()
-        assert [float(word) for word in words.groups()[:2]] == pytest.approx([depth, tension], rel=1e-3)
-        assert float(words.group(3)) == pytest.approx(force, rel=1e-3, abs=1e-9)
+        assert [float(word.replace(MINUS, "-")) for word in words.groups()[:2]] == pytest.approx(
+            [depth, tension], rel=1e-3
+        )
+        assert float(words.group(3).replace(MINUS, "-")) == pytest.approx(force, rel=1e-3, abs=1e-9)
         expect(cursor).to_have_attribute("aria-valuetext", f"{words.group(1)} m")
 
     cursor.focus()
@@ -568,6 +572,29 @@ def test_a_motion_is_asked_for_before_its_module_is_there_and_once(opened: Opens
     # The overview shows the same tables.
     expect(page.get_by_role("img", name="Full spectrum")).to_be_visible()
     assert tables() == ahead
+
+
+def test_a_string_in_motion_is_requested_before_its_modules_and_needs_little(opened: Opens, recorded: Sweep) -> None:
+    page = opened("#/nowhere")
+    asked: list[str] = []
+    held: list[Route] = []
+    page.on("request", lambda request: asked.append(request.url.partition("/points/1/")[2]))
+    page.route("**/point/string.js", lambda route: held.append(route))
+    address = page.url.replace("#/nowhere", f"#/sweeps/{recorded.id}/points/1?view=string")
+    page.goto("about:blank")
+    page.goto(address, wait_until="commit")
+
+    def tables() -> list[str]:
+        return sorted(url for url in asked if url.startswith(("statics", "snapshots")) and "npz" not in url)
+
+    until(page, lambda: len(tables()) == 3)
+    ahead = tables()
+    for route in held:
+        route.continue_()
+    expect(page.locator("canvas.scene[data-drawn]")).to_be_visible()
+    # An answer is kept for 3 s, so that a slow machine requests the same again: never another table, nor a whole one.
+    assert set(ahead) <= set(tables())
+    assert all("fields=" in url or "node=1" in url for url in tables())
 
 
 def test_multiples_of_the_highest_line_are_told_as_such(opened: Opens, sweep: Sweep) -> None:

@@ -34,30 +34,70 @@ export function append(parent, children) {
   }
 }
 
+/** Link or button that the mouse holds down. @type {Element | null} */
+let held = null;
+/** Whether `held` has taken the place of the one that was pressed. */
+let isReplaced = false;
+
+addEventListener(
+  "mousedown",
+  ({ button, target }) => {
+    held = button === 0 && target instanceof Element ? target.closest("a, button") : null;
+    isReplaced = false;
+  },
+  true,
+);
+addEventListener(
+  "mouseup",
+  (event) => {
+    const pressed = isReplaced ? held : null;
+    held = null;
+    isReplaced = false;
+    // A browser sends no click if the pressed element has left the page.
+    if (event.target instanceof Node && pressed?.contains(event.target))
+      pressed.dispatchEvent(new MouseEvent("click", event));
+  },
+  true,
+);
+
 /**
- * Puts children in the place of those that an element has. Where one of these had the keyboard's focus, its equivalent has it after: the
- * element of the same tag and name, or else the one at the same place among those of its tag where as many are there.
+ * Puts children in the place of those that an element has. If one of these had the keyboard's focus, its equivalent has it after; a link or a
+ * button that the mouse holds down is clicked as its equivalent.
  * @param {Element} parent
  * @param {(Child | Child[])[]} children
  */
 export function fill(parent, ...children) {
-  const focused = document.activeElement;
-  const before =
-    focused && focused !== parent && parent.contains(focused)
-      ? { name: nameOf(focused), all: [...parent.querySelectorAll(focused.localName)] }
-      : null;
+  const [focusedAfter, heldAfter] = [document.activeElement, held].map((element) =>
+    follower(parent, element),
+  );
   parent.replaceChildren();
   append(parent, children);
-  if (!focused || !before) return;
-  const after = [...parent.querySelectorAll(focused.localName)];
-  const sameName = after.filter((element) => nameOf(element) === before.name);
-  const samePlace = after.length === before.all.length ? after[before.all.indexOf(focused)] : undefined;
-  const equivalent = parent.contains(focused)
-    ? focused
-    : sameName.length === 1
-      ? sameName[0]
-      : (samePlace ?? sameName[0]);
-  if (equivalent instanceof HTMLElement) equivalent.focus({ preventScroll: true });
+  const focused = focusedAfter();
+  if (focused instanceof HTMLElement) focused.focus({ preventScroll: true });
+  const pressed = heldAfter();
+  if (!pressed || pressed === held) return;
+  held = pressed;
+  isReplaced = true;
+}
+
+/**
+ * Finds the equivalent of an element after its parent has been filled anew: the element itself, the one of the same tag and name, or else the
+ * one at the same place among those of its tag if as many are there.
+ * @param {Element} parent before it is filled
+ * @param {Element | null} element
+ * @returns {() => Element | undefined} undefined if the parent did not contain the element
+ */
+function follower(parent, element) {
+  if (!element || element === parent || !parent.contains(element)) return () => undefined;
+  const name = nameOf(element);
+  const before = [...parent.querySelectorAll(element.localName)];
+  return () => {
+    if (parent.contains(element)) return element;
+    const after = [...parent.querySelectorAll(element.localName)];
+    const sameName = after.filter((other) => nameOf(other) === name);
+    const samePlace = after.length === before.length ? after[before.indexOf(element)] : undefined;
+    return sameName.length === 1 ? sameName[0] : (samePlace ?? sameName[0]);
+  };
 }
 
 /**

@@ -3,7 +3,7 @@
 import { link } from "./router.js";
 
 /** Points that are compared, at most. */
-export const MOST = 6;
+export const MOST = preload.MOST;
 
 const KEPT = "drillsweep.comparison";
 
@@ -17,17 +17,7 @@ export function rememberComparison(query) {
   sessionStorage.setItem(KEPT, query.toString());
 }
 
-/**
- * The points that a comparison's link names, each once.
- * @param {URLSearchParams} query
- * @returns {string[]} such as `SWEEP:3`
- */
-export function comparedIn(query) {
-  return [...new Set((query.get("points") ?? "").split(",").filter((key) => /^[\w-]+:\d+$/.test(key)))].slice(
-    0,
-    MOST,
-  );
-}
+export const comparedIn = preload.comparedIn;
 
 /**
  * Links from a point to a comparison: a new one, and the one opened last with this point added.

@@ -29,7 +29,11 @@ export function barsOf(trace, all, x, y) {
       words.toPixel(word) +
       (isLying ? -1 : 1) * (group.indexOf(trace) - (group.length - 1) / 2) * thick -
       thick / 2;
-    const [zero, end] = [lengths.toPixel(0), lengths.toPixel(value)];
+    // A logarithmic axis has no zero: bars stand on its lower end.
+    const [zero, end] = [
+      lengths.toPixel(lengths.isLog ? Math.min(...lengths.range) : 0),
+      lengths.toPixel(value),
+    ];
     return isLying
       ? [{ row, x: zero, y: start, width: end - zero, height: thick }]
       : [{ row, x: start, y: zero, width: thick, height: end - zero }];

@@ -31,7 +31,7 @@ export function roundValues(low, high, count) {
 export function tickText(value) {
   const size = Math.abs(value);
   if (size !== 0 && (size < WRITTEN || size >= HUGE)) return powerText(value);
-  return number(Number(value.toPrecision(6)), 6).replace("-", "−");
+  return number(Number(value.toPrecision(6)), 6);
 }
 
 /** A number as a multiple of a power of ten, such as `2×10⁻⁵`. @param {number} value */

@@ -20,9 +20,12 @@ Object.assign(globalThis, {
   },
   matchMedia: () => ({ matches: false, addEventListener: () => {} }),
   preload: {
+    MOST: 6,
+    PAGE: 100,
     address: (path) => path,
     route: () => ({ path: [], query: new URLSearchParams() }),
     sent: () => undefined,
+    posted: () => undefined,
   },
 });
 

@@ -12,7 +12,7 @@ const written = (/** @type {number[]} */ values) => values.map(aligner(values, 5
 test("numbers of a column have equal decimals, as few as they need", () => {
   assert.deepEqual(written([0.01, 0.04, 0.025]), ["0.010", "0.040", "0.025"]);
   assert.deepEqual(written([1200, 1500]), ["1200", "1500"]);
-  assert.deepEqual(written([123.456, -1.5, 0]), ["123.46", "-1.50", "0.00"]);
+  assert.deepEqual(written([123.456, -1.5, 0]), ["123.46", "−1.50", "0.00"]);
 });
 
 test("small numbers keep three digits next to large ones", () => {

@@ -4,7 +4,14 @@ import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { near } from "./browser.js";
-import { columnsOf, largestFirst, panelsInPlane, panelsOverTime, rangeOf } from "../../compare/panels.js";
+import {
+  columnsOf,
+  largestFirst,
+  linesOf,
+  panelsInPlane,
+  panelsOver,
+  rangeOf,
+} from "../../compare/panels.js";
 
 const panel = (name, y, scale = "") => ({
   name,
@@ -17,7 +24,7 @@ const panel = (name, y, scale = "") => ({
 test("panels over time have one scale for each quantity and do not overlap", () => {
   const place = { style: {}, clientWidth: 900 };
   const panels = [panel("a", [0, 2], "v"), panel("b", [-4, 6], "v"), panel("c", [100, null], "T")];
-  const { traces, layout } = panelsOverTime(place, panels);
+  const { traces, layout } = panelsOver(place, panels);
   assert.deepEqual(
     traces.map(({ yaxis }) => yaxis),
     ["y", "y2", "y3"],
@@ -35,16 +42,34 @@ test("panels over time have one scale for each quantity and do not overlap", () 
 });
 
 test("names of panels are text and no markup", () => {
-  const { layout } = panelsOverTime({ style: {}, clientWidth: 900 }, [panel("<b>x</b> & y", [1])]);
+  const { layout } = panelsOver({ style: {}, clientWidth: 900 }, [panel("<b>x</b> & y", [1])]);
   assert.equal(layout.annotations[0].text, "<b>x</b> & y");
   assert.equal(layout.annotations[0].mark, "#0072b2");
 });
 
-test("long names are cut where a panel ends", () => {
+test("long names are broken into lines where a panel ends, and none is cut", () => {
   const name = "1: flow rate 0.0266 m³/s, mud density 1650 kg/m³";
-  const shown = (width) => panelsOverTime({ style: {}, clientWidth: width }, [panel(name, [1])]);
-  assert.equal(shown(900).layout.annotations[0].text, name);
-  assert.match(shown(350).layout.annotations[0].text, /^1: flow rate 0\.0266 m³\/s, [^<]*…$/);
+  const shown = (width) => {
+    const place = { style: {}, clientWidth: width };
+    return { place, note: panelsOver(place, [panel("2", [1]), panel(name, [1])]).layout.annotations[1] };
+  };
+  assert.equal(shown(900).note.text, name);
+  const lines = shown(350).note.text.split("<br>");
+  assert.equal(lines.join(" "), name);
+  assert.equal(lines.length, 2);
+  // Panels keep their heights.
+  assert.equal(parseFloat(shown(350).place.style.height), parseFloat(shown(900).place.style.height));
+  const high = (width) => {
+    const place = { style: {}, clientWidth: width };
+    panelsOver(place, Array(6).fill(panel(name, [1])));
+    return parseFloat(place.style.height);
+  };
+  assert.equal(high(350) - high(900), 6 * 15);
+});
+
+test("words that are longer than a line are broken, and no letter is lost", () => {
+  assert.deepEqual(linesOf("abcdefghij kl mn", 5), ["abcde", "fghij", "kl mn"]);
+  assert.deepEqual(linesOf("", 5), [""]);
 });
 
 test("orbits are in a plane of equal panels, below each other on a phone", () => {

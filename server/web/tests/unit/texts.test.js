@@ -6,7 +6,8 @@ import { beforeEach, test } from "node:test";
 import { choose } from "../../data/settings.js";
 import { loadQuantities } from "../../data/units.js";
 import { changeOf, object, read, span, Unreadable, written } from "../../submit/values.js";
-import { conditions, tickedIn } from "../../sweep/table.js";
+import { conditions } from "../../sweep/table.js";
+import { tickedIn } from "../../sweep/ticked.js";
 
 await loadQuantities();
 beforeEach(() => choose("units", "si"));

@@ -55,8 +55,8 @@ test("values are written with their units", () => {
 test("errors and relative biases are shown in per cent", () => {
   for (const name of ["time_error", "whole_error", "mesh_error_mean_radius", "relative_spread"])
     assert.equal(units.say(name, 0.16398), "16.4 %");
-  assert.equal(units.say("bias_orbit_radius_rms_49", -0.02), "-2 %");
-  assert.equal(units.say("bias_line_frequency_hz_49_w1", -0.02), "-0.02 Hz");
+  assert.equal(units.say("bias_orbit_radius_rms_49", -0.02), "−2 %");
+  assert.equal(units.say("bias_line_frequency_hz_49_w1", -0.02), "−0.02 Hz");
   assert.equal(units.title("time_error"), "error by time steps [%]");
   assert.equal(units.say("error_estimate_displacement", 2e-6), "0.002 mm");
 });
@@ -104,16 +104,16 @@ test("paths of a scenario are those of the vocabulary, whatever their indices", 
 test("numbers have a few significant digits", () => {
   const written = [
     [0, "0"],
-    [-3, "-3"],
+    [-3, "−3"],
     [9999, "9999"],
     [999999, "999\u202f999"],
     [1234567, "1\u202f235\u202f000"],
-    [-12345.67, "-12\u202f350"],
+    [-12345.67, "−12\u202f350"],
     [1.234567e9, "1.235e9"],
     [12.3456, "12.35"],
     [0.012346, "0.01235"],
     [0.00012346, "1.235e-4"],
-    [-0.5, "-0.5"],
+    [-0.5, "−0.5"],
   ];
   for (const [value, text] of written) assert.equal(units.number(value), text);
   assert.equal(units.number(12.3456, 2), "12");
@@ -134,7 +134,7 @@ test("a number that is written keeps its value to the digits written", () => {
 test("large values have the unit that makes them short", () => {
   assert.equal(units.say("kinetic", 1.37e6), "1.37 MJ");
   assert.equal(units.say("kinetic", 9999), "9999 J");
-  assert.equal(units.say("kinetic", -20_000), "-20 kJ");
+  assert.equal(units.say("kinetic", -20_000), "−20 kJ");
   assert.equal(units.say("normal_force", 8e6), "8000 kN");
   assert.equal(units.say("normal_force", 2.4e7), "24 MN");
   assert.equal(units.say("mud_density", 12_345.6), "12\u202f350 kg/m³");

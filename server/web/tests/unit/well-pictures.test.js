@@ -4,7 +4,7 @@ import "./browser.js";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { rangeOf } from "../../point/well-pictures.js";
-import { onNodes } from "../../point/well.js";
+import { onNodes } from "../../data/well-frames.js";
 
 test("one range holds the values of all strings, whatever some of them lack", () => {
   assert.deepEqual(rangeOf([[3, null, 5], null, [-2]]), [-2, 5]);

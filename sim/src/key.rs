@@ -105,7 +105,7 @@ macro_rules! as_it_is {
 }
 
 /// Sections of a scenario in the order of their names, without its name.
-const SECTIONS: [Section; 14] = [
+const SECTIONS: [Section; 15] = [
     Section {
         name: "accuracy",
         is_same: |a, b, _| a.scenario.accuracy == b.accuracy,
@@ -125,6 +125,7 @@ const SECTIONS: [Section; 14] = [
         value: |_, active| effects(active),
     },
     as_it_is!(ensemble),
+    as_it_is!(hydraulics),
     Section {
         name: "mesh",
         is_same: |a, b, _| (a.scenario.mesh, a.scenario.accuracy) == (b.mesh, b.accuracy),
@@ -281,6 +282,7 @@ fn with_every_section() -> Scenario {
         ("accuracy", method.clone()),
         ("cost_study", study),
         ("well.section", json!([{ "from": 100.0 }])),
+        ("hydraulics.nozzles", json!([0.01])),
     ];
     let mut scenario = preset("paper-200m").expect("the preset of the paper is part of the program");
     for (path, value) in changes {

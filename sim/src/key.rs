@@ -334,6 +334,21 @@ mod tests {
     }
 
     #[test]
+    fn hydraulics_with_their_defaults_leave_the_key_and_others_enter_it() {
+        let with =
+            |path: &str, value: Value| canonical_json(&paper().with(path, value).expect("a valid field"));
+        assert_eq!(
+            with("hydraulics", json!({ "losses": "eccentric", "nozzles": [] })),
+            canonical_json(&paper())
+        );
+        assert_eq!(with("hydraulics.surface_length", json!(0.0)), canonical_json(&paper()));
+        let rp13d = with("hydraulics.losses", json!("rp13d"));
+        assert!(rp13d.contains(r#""hydraulics":{"losses":"rp13d"}"#), "{rp13d}");
+        let nozzles = with("hydraulics.nozzles", json!([0.0127, 0.0127]));
+        assert!(nozzles.contains(r#""hydraulics":{"nozzles":[0.0127,0.0127]}"#), "{nozzles}");
+    }
+
+    #[test]
     fn a_hole_section_enters_by_its_numbers_but_its_name() {
         let with = |section: Value| canonical_json(&paper().with("well.section", section).unwrap());
         assert_eq!(with(json!([])), canonical_json(&paper()));
@@ -636,6 +651,8 @@ mod tests {
             ".cost_study.reference.methods.spectral_radius",
             ".cost_study.reference.methods.tolerance",
             ".cost_study.total",
+            ".hydraulics.nozzle_area",
+            ".hydraulics.surface_case",
             ".string.material.grade",
             ".string.sections.material.grade",
             ".string.sections.tool_joint.material.grade",

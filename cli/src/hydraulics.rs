@@ -94,8 +94,8 @@ fn text(name: &str, circuit: &Circuit, system: UnitSystem) -> Result<String, std
     }
 
     let sizes = format!("diameters {}", width.symbol);
-    let lengths = format!("{}", depth.symbol);
-    let mut header = vec!["".to_owned(), sizes, lengths];
+    let lengths = depth.symbol.to_owned();
+    let mut header = vec![String::new(), sizes, lengths];
     header.extend(circuit.columns.iter().map(heading));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let table = columns(&header, &rows, |column| match column {

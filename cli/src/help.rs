@@ -50,6 +50,10 @@ const GROUPS: [Group; 4] = [
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),
             ("statics", "drillsweep statics paper-200m --modes pick_up,slack_off,rotate --friction 0.2,0.3"),
+            (
+                "hydraulics",
+                "drillsweep hydraulics wells/volve-f12 --units field --set hydraulics.surface_case=4",
+            ),
             ("cost", "drillsweep cost paper-200m-damped --presets draft,standard --output cost"),
         ],
     ),

@@ -11,6 +11,7 @@ mod fetch;
 mod gc;
 mod health;
 mod help;
+mod hydraulics;
 mod import;
 mod migrate;
 mod modes;
@@ -102,6 +103,8 @@ enum Command {
     Modes(modes::ModesArguments),
     /// Compute torque and drag of a soft string: hook load and surface torque over bit depth, by motion and friction.
     Statics(statics::StaticsArguments),
+    /// Compute the pressures of the mud's circuit: losses by part, equivalent circulating density and standpipe pressure, by three sets of formulas.
+    Hydraulics(hydraulics::HydraulicsArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -225,6 +228,7 @@ fn run() -> anyhow::Result<()> {
         Command::Import(arguments) => import::show(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Statics(arguments) => statics::show(&arguments),
+        Command::Hydraulics(arguments) => hydraulics::show(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

@@ -186,11 +186,11 @@ quantities! {
     /// Pressure in the bore at the middle of the element.
     BORE_PRESSURE: "bore_pressure", "p_i", PRESSURE, "bore pressure";
 
-    /// Pressure in the bore at the top of the string, without surface lines.
+    /// Pressure in the bore at the top of the string, with the loss of the surface lines that the scenario has.
     STANDPIPE_PRESSURE: "standpipe_pressure", "", PRESSURE, "standpipe pressure";
     /// Pressure lost to friction in the annulus along the string.
     ANNULUS_PRESSURE_LOSS: "annulus_pressure_loss", "", PRESSURE, "annulus pressure loss";
-    /// Pressure lost to friction in the bore along the string.
+    /// Pressure lost to friction in the bore along the string, and over tools in it.
     BORE_PRESSURE_LOSS: "bore_pressure_loss", "", PRESSURE, "bore pressure loss";
     /// Pressure lost at the bit.
     BIT_PRESSURE_LOSS: "bit_pressure_loss", "", PRESSURE, "bit pressure loss";

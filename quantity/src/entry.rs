@@ -267,6 +267,15 @@ static FAMILIES: &[Family] = &[
         ],
     },
     Family {
+        dimension: "area",
+        units: &[
+            unit(&["m2"], "1"),
+            unit(&["mm2"], "0.000001"),
+            unit(&["cm2"], "0.0001"),
+            unit(&["in2"], "0.00064516"),
+        ],
+    },
+    Family {
         dimension: "reciprocal length",
         units: &[
             unit(&["1/m"], "1"),

@@ -83,6 +83,24 @@ pub(super) static ALL: &[Quantity] = &[
     field("mud.flow_index", "n", Some(&units::RATIO), "flow index"),
     field("mud.bit_pressure_drop", "", Some(&units::PRESSURE), "bit pressure drop"),
     field("mud.back_pressure", "", Some(&units::PRESSURE), "back pressure"),
+    // Pressure losses.
+    field("hydraulics.nozzles", "", Some(&units::WIDTH), "nozzle diameter"),
+    field("hydraulics.nozzle_area", "TFA", Some(&units::FLOW_AREA), "total flow area of the nozzles"),
+    field(
+        "hydraulics.discharge_coefficient",
+        "C_d",
+        Some(&units::RATIO),
+        "discharge coefficient of the nozzles",
+    ),
+    field(
+        "hydraulics.tool_pressure_drop",
+        "",
+        Some(&units::PRESSURE),
+        "pressure drop of tools in the string",
+    ),
+    field("hydraulics.surface_case", "", None, "case of the surface equipment"),
+    field("hydraulics.surface_length", "", Some(&units::DEPTH), "length of the surface lines"),
+    field("hydraulics.surface_diameter", "", Some(&units::WIDTH), "inner diameter of the surface lines"),
     // Operation.
     field("operation.rotation_speed_rpm", "Omega", Some(&units::SPEED_OF_ROTATION), "rotation speed"),
     field("operation.weight_on_bit", "", Some(&units::FORCE), "weight on bit"),

@@ -164,6 +164,8 @@ pub static RATE: Units = units("rate", "1/s", ("1/s", 1.0));
 pub static DEPTH: Units = units("length", "m", ("ft", FOOT));
 /// Lengths across the hole: diameters, clearances, displacements.
 pub static WIDTH: Units = shown_in("length", "m", ("mm", 1e-3), ("in", INCH));
+/// Areas of small openings.
+pub static FLOW_AREA: Units = units("area", "m2", ("in2", INCH * INCH));
 /// Wavenumbers and sharpnesses.
 pub static PER_LENGTH: Units = units("reciprocal length", "1/m", ("1/in", 1.0 / INCH));
 /// Speeds.

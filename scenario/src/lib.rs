@@ -9,6 +9,7 @@ mod effects;
 mod failure;
 mod format;
 mod hole;
+mod hydraulics;
 mod mesh;
 mod nearest;
 mod number;
@@ -28,6 +29,7 @@ pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use failure::{FailureClass, PointError};
 pub use hole::{Hole, HoleSection};
+pub use hydraulics::{Hydraulics, PressureLosses};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use nearest::{nearest, unknown_preset};
 pub use outputs::{OrbitOutputs, Outputs};
@@ -57,6 +59,9 @@ pub struct Scenario {
     /// lateral motion but the structure's and the wall's.
     #[serde(default)]
     pub mud: Option<Mud>,
+    /// Pressure losses of the mud's circuit; absent means those of the eccentric string, without nozzles and surface lines.
+    #[serde(default)]
+    pub hydraulics: Hydraulics,
     /// Rotation and loads.
     pub operation: Operation,
     /// Borehole contact and friction.

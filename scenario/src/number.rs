@@ -6,7 +6,7 @@
 use crate::set::{Step, parse};
 use crate::{
     Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, HoleSection,
-    Material, Mesh, MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs,
+    Hydraulics, Material, Mesh, MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs,
     RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots, StudyReference, SurveyStation,
     TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
 };
@@ -114,7 +114,7 @@ macro_rules! numbers {
     };
 }
 
-numbers!(Scenario: well, string, mud, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
+numbers!(Scenario: well, string, mud, hydraulics, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
     without name, statics, effects, ensemble);
 numbers!(Well: hole_diameter, survey, section);
 numbers!(HoleSection: from, hole_diameter, static_friction, dynamic_friction; without name);
@@ -127,6 +127,8 @@ numbers!(Gauge: measured_depth, clearance);
 numbers!(UnbalanceMass: measured_depth, mass, radius, phase_deg);
 numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pressure_drop, back_pressure;
     without regime, rotation_factor, viscosity_eccentricity);
+numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
+    without losses, surface_case);
 numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit; without top);
 numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
     static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);

@@ -105,7 +105,7 @@ macro_rules! as_it_is {
 }
 
 /// Sections of a scenario in the order of their names, without its name.
-const SECTIONS: [Section; 14] = [
+const SECTIONS: [Section; 15] = [
     Section {
         name: "accuracy",
         is_same: |a, b, _| a.scenario.accuracy == b.accuracy,
@@ -125,6 +125,7 @@ const SECTIONS: [Section; 14] = [
         value: |_, active| effects(active),
     },
     as_it_is!(ensemble),
+    as_it_is!(hydraulics),
     Section {
         name: "mesh",
         is_same: |a, b, _| (a.scenario.mesh, a.scenario.accuracy) == (b.mesh, b.accuracy),
@@ -281,6 +282,7 @@ fn with_every_section() -> Scenario {
         ("accuracy", method.clone()),
         ("cost_study", study),
         ("well.section", json!([{ "from": 100.0 }])),
+        ("hydraulics.nozzles", json!([0.01])),
     ];
     let mut scenario = preset("paper-200m").expect("the preset of the paper is part of the program");
     for (path, value) in changes {
@@ -329,6 +331,21 @@ mod tests {
         // Keys of stored results hash it: a change here means that all of them are computed again.
         let text: Value = serde_json::from_str(&canonical_json(&paper())).unwrap();
         insta::assert_json_snapshot!(text);
+    }
+
+    #[test]
+    fn hydraulics_with_their_defaults_leave_the_key_and_others_enter_it() {
+        let with =
+            |path: &str, value: Value| canonical_json(&paper().with(path, value).expect("a valid field"));
+        assert_eq!(
+            with("hydraulics", json!({ "losses": "eccentric", "nozzles": [] })),
+            canonical_json(&paper())
+        );
+        assert_eq!(with("hydraulics.surface_length", json!(0.0)), canonical_json(&paper()));
+        let rp13d = with("hydraulics.losses", json!("rp13d"));
+        assert!(rp13d.contains(r#""hydraulics":{"losses":"rp13d"}"#), "{rp13d}");
+        let nozzles = with("hydraulics.nozzles", json!([0.0127, 0.0127]));
+        assert!(nozzles.contains(r#""hydraulics":{"nozzles":[0.0127,0.0127]}"#), "{nozzles}");
     }
 
     #[test]
@@ -634,6 +651,8 @@ mod tests {
             ".cost_study.reference.methods.spectral_radius",
             ".cost_study.reference.methods.tolerance",
             ".cost_study.total",
+            ".hydraulics.nozzle_area",
+            ".hydraulics.surface_case",
             ".string.material.grade",
             ".string.sections.material.grade",
             ".string.sections.tool_joint.material.grade",

@@ -1,7 +1,8 @@
 //! The string of a whole well, 3,438 m with 336 joints of drillpipe.
 
-use drillsweep_scenario::{ElementLengths, Mesh, Scenario, preset};
+use drillsweep_scenario::{ElementLengths, Mesh, PressureLosses, Scenario, preset};
 use drillsweep_sim::math::dof::{U, V};
+use drillsweep_sim::solve::hydraulics::{Circuit, Conduit};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::statics::Equilibrium;
 
@@ -77,4 +78,34 @@ fn a_whole_string_off_bottom_hangs_and_turns_as_a_soft_string_does() {
         assert!((equilibrium.tension[0] / hook_load - 1.0).abs() < 5e-3, "{} N", equilibrium.tension[0]);
         assert!(torque.contains(&-equilibrium.torque[0]), "{} N m", equilibrium.torque[0]);
     }
+}
+
+#[test]
+fn pressures_of_a_whole_well_are_those_of_the_formulas_by_another_program() {
+    // Losses of API RP 13D by a program of its own, in Pa: 310.4 psi of annulus and 1,312.8 psi of bore, of which the tool joints have 53.7 and
+    // 182.0 psi.
+    let (model, equilibrium) = on(Mesh::auto(1.0));
+    let circuit = Circuit::new(&model, &equilibrium).expect("it has mud");
+    let column = |losses| {
+        circuit
+            .columns
+            .iter()
+            .position(|column| column.losses == losses && !column.rotates)
+            .expect("a column")
+    };
+    let [eccentric, concentric, rp13d] = PressureLosses::ALL.map(column);
+    let of = |column: usize| &circuit.columns[column];
+    let near = |value: f64, expected: f64| assert!((value / expected - 1.0).abs() < 1e-4, "{value}");
+    near(of(rp13d).annulus_loss, 2.139_815e6);
+    near(of(rp13d).bore_loss, 9.051_222e6);
+    let joints = |conduit: Conduit| -> f64 {
+        let parts = circuit.parts.iter().filter(|part| part.conduit == conduit && part.kind == "tool joint");
+        parts.map(|part| part.losses[rp13d]).sum::<f64>() / 6_894.757
+    };
+    assert!((joints(Conduit::Annulus) - 53.65).abs() < 0.05, "{}", joints(Conduit::Annulus));
+    assert!((joints(Conduit::Bore) - 182.01).abs() < 0.1, "{}", joints(Conduit::Bore));
+    // A string in the middle loses about as much by either friction; on the low side it loses between the factors of laminar and turbulent flow.
+    let annulus = [eccentric, concentric, rp13d].map(|column| of(column).annulus_loss);
+    assert!((annulus[2] / annulus[1] - 1.0).abs() < 0.15, "{annulus:?}");
+    assert!((0.5..0.75).contains(&(annulus[0] / annulus[1])), "{annulus:?}");
 }

@@ -2,6 +2,7 @@
 
 use drillsweep_scenario::{NodeChoice, StartFriction, TimeWindow};
 use drillsweep_sim::force::effect::CONTACT_WORK;
+use drillsweep_sim::force::mud::CircuitLosses;
 use serde::Serialize;
 
 use crate::loads::{LoadSummary, Worst, worst};
@@ -53,11 +54,11 @@ pub struct StaticsSummary {
 /// Pressures of the mud along the string.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HydraulicsSummary {
-    /// Pressure in the bore at the top \[Pa\].
+    /// Pressure in the bore at the top, with the loss of the surface lines \[Pa\].
     pub standpipe_pressure: f64,
     /// Pressure lost to friction in the annulus \[Pa\].
     pub annulus_loss: f64,
-    /// Pressure lost to friction in the bore \[Pa\].
+    /// Pressure lost to friction in the bore and over tools in it \[Pa\].
     pub bore_loss: f64,
     /// Pressure lost at the bit \[Pa\].
     pub bit_loss: f64,
@@ -207,15 +208,19 @@ impl StaticsSummary {
 impl HydraulicsSummary {
     fn of(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         let pressures = equilibrium.pressures.as_ref()?;
-        let elements = || model.mesh.elements.iter().zip(&equilibrium.flows);
+        let mud = model.scenario.mud.as_ref()?;
+        let hydraulics = &model.scenario.hydraulics;
+        let steps = equilibrium.pressure_steps(model).ok()?;
+        let circuit = CircuitLosses::new(mud, hydraulics, hydraulics.losses).ok()?;
         let (top, bottom) = (*pressures.annulus.first()?, *pressures.annulus.last()?);
         let depth = model.frames.last()?.position.z - model.frames.first()?.position.z;
         let has_density = depth > 0.0 && model.effects.gravity;
         Some(Self {
-            standpipe_pressure: *pressures.bore.first()?,
-            annulus_loss: elements().map(|(element, flow)| flow.friction_gradient * element.length).sum(),
-            bore_loss: elements().map(|(element, flow)| flow.bore_friction_gradient * element.length).sum(),
-            bit_loss: pressures.bore.last()? - bottom,
+            standpipe_pressure: pressures.bore.first()? + circuit.surface,
+            annulus_loss: steps.iter().map(|step| step.friction_gradient * step.length).sum(),
+            bore_loss: steps.iter().map(|step| step.bore_friction_gradient * step.length).sum::<f64>()
+                + circuit.tools,
+            bit_loss: pressures.bore.last()? - bottom - circuit.tools,
             equivalent_circulating_density: has_density.then(|| (bottom - top) / (GRAVITY * depth)),
         })
     }

@@ -1,5 +1,6 @@
-//! Model of a scenario, its equilibrium, its modes, and its motion in time; torque and drag of a string without bending stiffness.
+//! Model of a scenario, its equilibrium, its modes, and its motion in time; torque and drag of a string without bending stiffness; pressures of the mud's circuit.
 
+pub mod hydraulics;
 pub mod model;
 pub mod modes;
 pub mod motion;

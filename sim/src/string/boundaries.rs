@@ -26,6 +26,19 @@ pub enum ElementKind {
     Bit,
 }
 
+impl ElementKind {
+    /// Name in words of the field.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DrillpipeBody => "drillpipe",
+            Self::ToolJoint => "tool joint",
+            Self::Collar => "collar",
+            Self::Stabilizer => "stabilizer",
+            Self::Bit => "bit",
+        }
+    }
+}
+
 /// A part of the string of one kind, one cross-section and one material, with nodes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct UniformPart {

@@ -2,9 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use drillsweep_scenario::{ContactLaw, Mud, Operation, Scenario, WallLaw};
+use drillsweep_scenario::{ContactLaw, Hydraulics, Mud, Operation, Scenario, WallLaw};
 
 use super::report::Report;
+use crate::force::mud::SURFACE_CASES;
 
 /// Densities of muds \[kg/m3\] from oil to the heaviest weighted ones, 21.7 lb/gal.
 const USUAL_MUD_DENSITIES: RangeInclusive<f64> = 800.0..=2600.0;
@@ -20,6 +21,24 @@ const USUAL_YIELD_STRESSES: RangeInclusive<f64> = 0.0..=100.0;
 
 /// Pressures \[Pa\] up to above the ratings of pumps and blowout preventers, 15,000 psi.
 const USUAL_PRESSURES: RangeInclusive<f64> = 0.0..=1.1e8;
+
+/// Largest number of nozzles of a bit; the largest hole openers have some 20.
+const MOST_NOZZLES: usize = 24;
+
+/// Largest diameter of a nozzle \[m\]: an open bore.
+const LARGEST_NOZZLE: f64 = 0.1;
+
+/// Largest flow area of a bit \[m2\], 155 in2.
+const LARGEST_FLOW_AREA: f64 = 0.1;
+
+/// Discharge coefficients from a sharp-edged orifice to the pressure recovery of modern bits.
+const DISCHARGE_COEFFICIENTS: RangeInclusive<f64> = 0.5..=1.2;
+
+/// Longest surface lines \[m\] as an equivalent pipe; the narrowest equipment is some 800 m of 3.826 in.
+const LONGEST_SURFACE_LINES: f64 = 10_000.0;
+
+/// Widest surface lines \[m\].
+const WIDEST_SURFACE_LINES: f64 = 0.5;
 
 /// Usual speeds of rotation from above \[rpm\], either way; top drives reach 200 to 300.
 const USUAL_ROTATION: RangeInclusive<f64> = -400.0..=400.0;
@@ -46,6 +65,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     if let Some(mud) = &scenario.mud {
         check_mud(report, mud);
     }
+    check_hydraulics(report, scenario);
     check_operation(report, &scenario.operation);
     check_contact(report, &scenario.contact);
     report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
@@ -81,6 +101,86 @@ fn check_mud(report: &mut Report, mud: &Mud) {
     report.usual(mud.bit_pressure_drop, "mud.bit_pressure_drop", &USUAL_PRESSURES, "Pa");
     report.not_negative(mud.back_pressure, "mud.back_pressure");
     report.usual(mud.back_pressure, "mud.back_pressure", &USUAL_PRESSURES, "Pa");
+}
+
+fn check_hydraulics(report: &mut Report, scenario: &Scenario) {
+    let hydraulics = &scenario.hydraulics;
+    let nozzles = &hydraulics.nozzles;
+    report.require(
+        nozzles.len() <= MOST_NOZZLES,
+        "hydraulics.nozzles",
+        format!("{} nozzles", nozzles.len()),
+        format!("must be at most {MOST_NOZZLES} nozzles"),
+    );
+    for (i, &diameter) in nozzles.iter().enumerate().take(MOST_NOZZLES) {
+        report.number(
+            diameter,
+            format!("hydraulics.nozzles[{i}]"),
+            |diameter| diameter > 0.0 && diameter <= LARGEST_NOZZLE,
+            format!("must be greater than 0 and at most {LARGEST_NOZZLE} m (16/32 in is 0.0127 m)"),
+        );
+    }
+    if let Some(area) = hydraulics.nozzle_area {
+        report.number(
+            area,
+            "hydraulics.nozzle_area",
+            |area| area > 0.0 && area <= LARGEST_FLOW_AREA,
+            format!("must be greater than 0 and at most {LARGEST_FLOW_AREA} m2 (1 in2 is 6.4516e-4 m2)"),
+        );
+        report.require(
+            nozzles.is_empty(),
+            "hydraulics.nozzle_area",
+            area,
+            "takes the place of hydraulics.nozzles: give one of them",
+        );
+    }
+    let drop = scenario.mud.map_or(0.0, |mud| mud.bit_pressure_drop);
+    report.require(
+        hydraulics.flow_area().is_none() || drop == 0.0,
+        "mud.bit_pressure_drop",
+        drop,
+        "is the loss of the bit, which nozzles give: leave it out, and give the loss of tools as hydraulics.tool_pressure_drop",
+    );
+    report.number(
+        hydraulics.discharge_coefficient,
+        "hydraulics.discharge_coefficient",
+        |coefficient| DISCHARGE_COEFFICIENTS.contains(&coefficient),
+        "must be 0.5 to 1.2 (0.95 in API RP 13D)",
+    );
+    report.not_negative(hydraulics.tool_pressure_drop, "hydraulics.tool_pressure_drop");
+    let tools = hydraulics.tool_pressure_drop;
+    report.usual(tools, "hydraulics.tool_pressure_drop", &USUAL_PRESSURES, "Pa");
+    check_surface_lines(report, hydraulics);
+}
+
+fn check_surface_lines(report: &mut Report, hydraulics: &Hydraulics) {
+    let length = hydraulics.surface_length;
+    if let Some(case) = hydraulics.surface_case {
+        report.require(
+            (1..=SURFACE_CASES).contains(&case),
+            "hydraulics.surface_case",
+            case,
+            format!("must be 1 to {SURFACE_CASES}, a case of surface equipment of API RP 13D"),
+        );
+        report.number(
+            length,
+            "hydraulics.surface_length",
+            |length| length == 0.0,
+            "takes the place of hydraulics.surface_case: give one of them",
+        );
+    }
+    report.number(
+        length,
+        "hydraulics.surface_length",
+        |length| (0.0..=LONGEST_SURFACE_LINES).contains(&length),
+        format!("must be 0 to {LONGEST_SURFACE_LINES} m"),
+    );
+    report.number(
+        hydraulics.surface_diameter,
+        "hydraulics.surface_diameter",
+        |diameter| diameter > 0.0 && diameter <= WIDEST_SURFACE_LINES,
+        format!("must be greater than 0 and at most {WIDEST_SURFACE_LINES} m (4 in is 0.1016 m)"),
+    );
 }
 
 fn check_operation(report: &mut Report, operation: &Operation) {
@@ -184,7 +284,7 @@ fn belongs(report: &mut Report, contact: &ContactLaw, field: &str, value: f64) -
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Mud, Scenario, WallLaw};
+    use drillsweep_scenario::{Hydraulics, Mud, Scenario, WallLaw};
 
     use super::super::report::testing::{problem, warnings};
 
@@ -224,6 +324,35 @@ mod tests {
     fn pressures_are_not_negative() {
         mud_problem("bit_pressure_drop", |mud| mud.bit_pressure_drop = -1.0);
         mud_problem("back_pressure", |mud| mud.back_pressure = -1.0);
+    }
+
+    #[test]
+    fn nozzles_and_surface_lines_are_possible_and_given_once() {
+        let of = |path: &str, change: fn(&mut Hydraulics)| {
+            problem(&format!("hydraulics.{path}"), |s| change(&mut s.hydraulics)).message
+        };
+        assert!(of("nozzles[1]", |h| h.nozzles = vec![0.01, 12.0]).contains("16/32 in"));
+        assert!(of("nozzles", |h| h.nozzles = vec![0.01; 25]).contains("at most 24"));
+        of("nozzle_area", |h| h.nozzle_area = Some(0.0));
+        of("nozzle_area", |h| (h.nozzles, h.nozzle_area) = (vec![0.01], Some(3e-4)));
+        of("discharge_coefficient", |h| h.discharge_coefficient = 0.0);
+        of("tool_pressure_drop", |h| h.tool_pressure_drop = -1.0);
+        for case in [0, 5] {
+            let found = problem("hydraulics.surface_case", |s| s.hydraulics.surface_case = Some(case));
+            assert!(found.message.contains("1 to 4"), "{found}");
+        }
+        of("surface_length", |h| h.surface_length = -1.0);
+        of("surface_length", |h| (h.surface_case, h.surface_length) = (Some(4), 100.0));
+        of("surface_diameter", |h| h.surface_diameter = 4.0);
+        let found = problem("mud.bit_pressure_drop", |s| {
+            s.hydraulics.nozzles = vec![0.01; 3];
+            s.mud.as_mut().unwrap().bit_pressure_drop = 1e6;
+        });
+        assert!(found.message.contains("tool_pressure_drop"), "{found}");
+        let whole = |h: &mut Hydraulics| {
+            (h.nozzles, h.surface_case, h.tool_pressure_drop) = (vec![0.0127; 6], Some(1), 2e6);
+        };
+        assert_eq!(warnings(|s| whole(&mut s.hydraulics)), []);
     }
 
     #[test]

@@ -1,15 +1,17 @@
 //! The mud past a string at rest: flows, drag and pressures, by the string's position.
 
-use drillsweep_scenario::Mud;
+use drillsweep_scenario::{Mud, PressureLosses};
 
 use super::error::StaticsError;
 
 use crate::force::mud::{
-    ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, pressures,
+    CircuitLosses, ElementFlow, FlowGeometry, MudError, PressureStep, Pressures, SectionFlow, SectionLosses,
+    pressures,
 };
 use crate::force::term::{gravity, mud_drag};
 use crate::math::dof::{DOFS, U, V};
-use crate::solve::model::Model;
+use crate::solve::model::{Model, StringElement};
+use crate::string::MeshElement;
 
 /// Change of the eccentricity over which the slope of the drag is taken.
 const ECCENTRICITY_STEP: f64 = 1e-6;
@@ -90,15 +92,33 @@ impl Sections {
 /// Pressures of the mud at every node.
 pub(super) fn node_pressures(model: &Model, mud: &Mud, flows: &[ElementFlow]) -> Result<Pressures, MudError> {
     let true_vertical_depth: Vec<f64> = model.frames.iter().map(|frame| frame.position.z).collect();
-    let elements = model.mesh.elements.iter().zip(flows);
-    let steps: Vec<PressureStep> = elements
-        .map(|(element, flow)| PressureStep {
-            length: element.length,
-            friction_gradient: flow.friction_gradient,
-            bore_friction_gradient: flow.bore_friction_gradient,
-        })
-        .collect();
-    pressures(mud, gravity::acceleration(model.effects.gravity), &true_vertical_depth, &steps)
+    let steps = pressure_steps(model, mud, flows)?;
+    let hydraulics = &model.scenario.hydraulics;
+    let losses = CircuitLosses::new(mud, hydraulics, hydraulics.losses)?;
+    let mud = Mud { bit_pressure_drop: losses.bit + losses.tools, ..*mud };
+    pressures(&mud, gravity::acceleration(model.effects.gravity), &true_vertical_depth, &steps)
+}
+
+/// Frictional gradients of every element by the scenario's formulas.
+pub(super) fn pressure_steps(
+    model: &Model,
+    mud: &Mud,
+    flows: &[ElementFlow],
+) -> Result<Vec<PressureStep>, MudError> {
+    let losses = model.scenario.hydraulics.losses;
+    let mut sections = SectionLosses::new(mud, losses, model.rotation_speed);
+    let elements = model.mesh.elements.iter().zip(&model.elements).zip(flows);
+    let step = |((element, of_model), flow): ((&MeshElement, &StringElement), &ElementFlow)| {
+        let (annulus, bore) = match losses {
+            PressureLosses::Eccentric => (flow.friction_gradient, flow.bore_friction_gradient),
+            PressureLosses::Concentric | PressureLosses::Rp13d => {
+                let gradients = sections.past(&of_model.flow_geometry, flow.eccentricity)?;
+                (gradients.annulus, gradients.bore)
+            }
+        };
+        Ok(PressureStep { length: element.length, friction_gradient: annulus, bore_friction_gradient: bore })
+    };
+    elements.map(step).collect()
 }
 
 /// Drag of the mud on every element, upward \[N/m\]; empty if drag is left out.

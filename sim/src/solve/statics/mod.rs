@@ -20,12 +20,12 @@ pub use overload::Overload;
 pub(crate) use overload::negative_eigenvalues;
 
 use drillsweep_scenario::StartFriction;
-use hydraulics::{Sections, drag, node_pressures};
+use hydraulics::{Sections, drag, node_pressures, pressure_steps};
 use newton::Start;
 use touch::{contact_along, contact_at};
 
 use crate::force::contact::Wall;
-use crate::force::mud::{ElementFlow, Pressures};
+use crate::force::mud::{ElementFlow, MudError, PressureStep, Pressures};
 use crate::math::dof::DOFS;
 use crate::solve::model::{Model, NodalVector, element_values};
 
@@ -188,6 +188,17 @@ impl Equilibrium {
             drag: Vec::new(),
             pressures: None,
             effort: StaticsEffort { newton_iterations: 0, hydraulic_passes: 0, residual: 0.0 },
+        }
+    }
+
+    /// Frictional gradients of every element by the formulas of the scenario's hydraulics; empty without mud.
+    ///
+    /// # Errors
+    /// The flow past a section has no solution by these formulas.
+    pub fn pressure_steps(&self, model: &Model) -> Result<Vec<PressureStep>, MudError> {
+        match &model.scenario.mud {
+            Some(mud) => pressure_steps(model, mud, &self.flows),
+            None => Ok(Vec::new()),
         }
     }
 

@@ -6,6 +6,7 @@ import { duration, number } from "../data/units.js";
 import { costsOf, decades, MOST_VERIFIED, studyCosts } from "../data/work-precision.js";
 import { canvas, draw, inks, LINES } from "../draw/plots.js";
 import { fill, h } from "../ui/dom.js";
+import { studyLink } from "./cost-study-link.js";
 import { studyParts } from "./cost-study.js";
 
 /** @typedef {import("./part.js").PointContext} PointContext */
@@ -16,16 +17,20 @@ export class AccuracyCost {
   #picture = canvas("Error of orbit size against processor time", "cost");
   #caption = h("figcaption", {});
   #words = h("div", {});
+  #study = h("p", { class: "small" });
   element = h(
     "section",
     { class: "panel", "aria-label": "What accuracy costs" },
     h("h2", {}, "What accuracy costs"),
     h("figure", {}, this.#picture, this.#caption),
     this.#words,
+    this.#study,
   );
 
   /** Cost study in place of the point's run, requested once. @type {Promise<any> | undefined} */
   #report;
+  /** Link to a cost study, requested once. @type {Promise<HTMLElement | null> | undefined} */
+  #link;
   /** Other verified points, requested once. @type {Promise<{point: any, error: number | null}[]> | undefined} */
   #others;
 
@@ -43,6 +48,10 @@ export class AccuracyCost {
     const itself = costsOf([{ point, error: own }]);
     const others = costsOf(await (this.#others ??= this.#verified()));
     const report = point.scenario.cost_study ? await (this.#report ??= this.#studied()) : null;
+    fill(
+      this.#study,
+      point.scenario.cost_study ? null : await (this.#link ??= studyLink(point, this.#context.signal)),
+    );
     const study = report && studyCosts(report);
     fill(this.#words, report ? studyParts(report) : null);
     const isEmpty = ![estimated, itself, others, study?.accuracies ?? [], study?.others ?? []].flat().length;

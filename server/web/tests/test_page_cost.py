@@ -61,3 +61,19 @@ def test_effects_of_a_study_have_what_leaving_them_out_changes_and_saves(opened:
     expect(contact).to_contain_text("no equilibrium after 400 iterations")
     # The whole scenario is no measured row of such a study.
     expect(page.get_by_role("figure", name="Error of orbit size against processor time")).to_be_hidden()
+
+
+def test_a_point_leads_to_the_cost_study_of_its_scenario(opened: Opens, client: Client) -> None:
+    sweep = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.013]}).wait(timeout=120.0)
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=about")
+    panel = page.get_by_role("region", name="What accuracy costs")
+    panel.get_by_role("link", name="Request a cost study of this scenario").click()
+    tag = page.get_by_label("Tags").input_value()
+    expect(page.get_by_role("button", name="Submit 1 point")).to_be_enabled()
+    # The study that the form would submit, but of one method and a tenth of a second.
+    study = {"duration": 0.1, "presets": ["draft"], "methods": []}
+    changes = SHORT | {"mud.flow_rate": 0.013, "cost_study": study}
+    answer = client.submit("paper-200m", set=changes, tags=[tag])
+    page = opened(f"#/sweeps/{sweep.id}/points/1?view=about")
+    page.get_by_role("link", name="Cost study of this scenario").click()
+    page.wait_for_url(f"**/sweeps/{answer.id}/points/1*")

@@ -415,6 +415,8 @@ quantities! {
     DISSIPATED_FRICTION: "dissipated_friction", "", ENERGY, "dissipated by friction";
     /// Energy dissipated by the wall's dampers up to this time.
     DISSIPATED_CONTACT: "dissipated_contact", "", ENERGY, "dissipated by the wall";
+    /// Energy that torsional and axial waves have carried out of a top that continues up to this time, less what came back.
+    RADIATED_TOP: "radiated_top", "", ENERGY, "radiated at the top";
     /// Net work of contact and friction forces on the motion up to this time.
     CONTACT_WORK: "contact_work", "", ENERGY, "contact work";
     /// Imbalance of energy: the error of the time integration.

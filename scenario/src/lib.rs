@@ -405,13 +405,20 @@ pub struct Operation {
     /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; it is constant, so that
     /// stick-slip comes from the wall alone.
     pub torque_on_bit: f64,
-    /// Boundary condition of the top node; absent means `clamped`. It affects bending near the top, and hardly the rest of the string.
+    /// Boundary condition of the top node; absent means `clamped`. `pinned` affects bending near the top, and hardly the rest of the string.
+    /// `clamped` and `pinned` reflect torsional and axial waves at the top: right at a top drive that holds its speed, not for a part of a
+    /// string, which takes `continues`.
     #[serde(default)]
     pub top: TopCondition,
+    /// Length of pipe \[m\] between the top of the string and the drive, with the top `continues`: above 0, at most 2e4; absent means that no
+    /// wave returns. Waves return from the drive after twice the length at 3,200 m/s (torsion) and 5,100 m/s (axial), without loss; shorter
+    /// steps than the first return of a wave are needed, which a length of a few metres makes costly.
+    #[serde(default)]
+    pub length_above: Option<f64>,
 }
 
 /// Boundary condition of the top node, in the frame that turns with the string: `clamped` holds all six degrees of freedom,
-/// `pinned` leaves the lateral rotations free.
+/// `pinned` leaves the lateral rotations free, `continues` lets torsional and axial waves pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TopCondition {
@@ -420,6 +427,9 @@ pub enum TopCondition {
     Clamped,
     /// The lateral rotations are free; the other four are held.
     Pinned,
+    /// The string is the lower part of a longer one: at rest as clamped; in motion the first section's pipe goes on upwards, uniform and
+    /// without friction, and carries torsional and axial waves away.
+    Continues,
 }
 
 /// Borehole contact, equations (10) to (14) of the paper.

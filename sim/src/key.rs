@@ -653,6 +653,7 @@ mod tests {
             ".cost_study.total",
             ".hydraulics.nozzle_area",
             ".hydraulics.surface_case",
+            ".operation.length_above",
             ".string.material.grade",
             ".string.sections.material.grade",
             ".string.sections.tool_joint.material.grade",

@@ -1,7 +1,7 @@
 //! Three hundred random scenarios: each run ends with a finite result whose ledger closes within its bound, or with a typed failure; at the
 //! accuracy of a preset a finer step confirms most results. More of them, and other seeds: `cargo bench -p drillsweep-study --bench soak`.
 
-use drillsweep_scenario::AccuracyPreset;
+use drillsweep_scenario::{AccuracyPreset, Scenario, TopCondition};
 use drillsweep_sim::control::Control;
 use drillsweep_study::finer::{Difference, Verdict};
 use random_runs::{Refined, RunEnd, at_accuracy, run, run_and_refine};
@@ -13,9 +13,15 @@ mod random_scenario;
 
 /// Runs fifty scenarios of a seed; at least `finite` of them must have a result.
 fn fifty(seed: u64, finite: usize) {
+    fifty_changed(seed, finite, |_, _| {});
+}
+
+/// The same of scenarios that are changed by their index.
+fn fifty_changed(seed: u64, finite: usize, change: impl Fn(u64, &mut Scenario)) {
     let mut results = 0;
     for index in 0..50 {
-        let scenario = random_scenario(seed, index);
+        let mut scenario = random_scenario(seed, index);
+        change(index, &mut scenario);
         match run(&scenario, &Control::new()) {
             RunEnd::Finite { ledger } => {
                 results += 1;
@@ -59,8 +65,12 @@ fn scenarios_of_seed_5() {
 }
 
 #[test]
-fn scenarios_of_seed_6() {
-    fifty(6, 30);
+fn scenarios_of_seed_6_as_parts_of_longer_strings() {
+    fifty_changed(6, 30, |index, scenario| {
+        scenario.operation.top = TopCondition::Continues;
+        // Waves that return within a step, and after the end of the run, are among them.
+        scenario.operation.length_above = [None, Some(0.5), Some(50.0), Some(2e4)][index as usize % 4];
+    });
 }
 
 /// Compares fifty results at an accuracy with those of a finer step, and with the errors that they state.

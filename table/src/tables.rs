@@ -186,6 +186,7 @@ pub static ENERGY: Layout = Layout {
         &DISSIPATED_FLUID,
         &DISSIPATED_FRICTION,
         &DISSIPATED_CONTACT,
+        &RADIATED_TOP,
         &CONTACT_WORK,
         &RESIDUAL,
     ],

@@ -6,7 +6,13 @@ import { TimeLine } from "../draw/time-line.js";
 import { fill, h } from "../ui/dom.js";
 
 const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
-const DISSIPATED = ["dissipated_structure", "dissipated_fluid", "dissipated_friction", "dissipated_contact"];
+const DISSIPATED = [
+  "dissipated_structure",
+  "dissipated_fluid",
+  "dissipated_friction",
+  "dissipated_contact",
+  "radiated_top",
+];
 /** Accounts of energy that can be gained or lost. */
 export const HELD = ["kinetic", "stored"];
 

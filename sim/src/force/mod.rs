@@ -5,6 +5,7 @@
 //! its account one in the ledger ([`effect::ACCOUNTS`]), and an effect of its own has one in the register of [effects](effect).
 
 pub mod contact;
+pub(crate) mod cut;
 pub mod drive;
 pub mod effect;
 pub(crate) mod end_load;

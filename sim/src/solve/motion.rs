@@ -99,6 +99,7 @@ impl Model {
             let of_slopes = element.load_of_slopes(equilibrium.tension[e], equilibrium.torque[e]);
             add_element_vector(&mut load, e, &-of_slopes);
         }
+        self.add_reactions(&stiffness, &equilibrium.displacement, &mut load);
         move_held_to_load(&stiffness, &held, &equilibrium.displacement, &mut load);
         for matrix in [&mut mass, &mut damping, &mut stiffness].into_iter().chain(&mut damping_of) {
             clear_held(matrix, &held);
@@ -115,12 +116,35 @@ impl Model {
         }
     }
 
+    /// Sets the load at degrees of freedom that the top releases to the force that holds them in equilibrium.
+    fn add_reactions(
+        &self,
+        stiffness: &BlockTridiagonal,
+        displacement: &[[f64; DOFS]],
+        load: &mut NodalVector,
+    ) {
+        let released: Vec<_> = (0..load.len()).map(|node| self.released_in_motion(node)).collect();
+        if released.iter().flatten().all(|released| !released) {
+            return;
+        }
+        let mut forces = vec![[0.0; DOFS]; load.len()];
+        stiffness.multiply_into(displacement, &mut forces);
+        for ((load, force), released) in load.iter_mut().zip(&forces).zip(&released) {
+            for dof in (0..DOFS).filter(|&dof| released[dof]) {
+                load[dof] = force[dof];
+            }
+        }
+    }
+
     fn held_without(&self, still: impl Fn(Effect) -> bool) -> Vec<[bool; DOFS]> {
         let off = Effect::ALL.iter().filter(|&&effect| still(effect));
         let still: Vec<usize> = off.filter_map(|&effect| term(effect).moves()).collect();
         (0..self.node_count())
             .map(|node| {
-                let mut held = self.held_by_top(node);
+                let (mut held, released) = (self.held_by_top(node), self.released_in_motion(node));
+                for dof in (0..DOFS).filter(|&dof| released[dof]) {
+                    held[dof] = false;
+                }
                 for &dof in &still {
                     held[dof] = true;
                 }

@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use drillsweep_scenario::{ContactLaw, Hydraulics, Mud, Operation, Scenario, WallLaw};
+use drillsweep_scenario::{
+    ContactLaw, Hydraulics, Mud, Operation, Scenario, StartFriction, TopCondition, WallLaw,
+};
 
 use super::report::Report;
 use crate::force::mud::SURFACE_CASES;
@@ -46,6 +48,9 @@ const USUAL_ROTATION: RangeInclusive<f64> = -400.0..=400.0;
 /// Largest speed of rotation \[rpm\]: with it the surface of a pipe of 0.2 m moves at 100 m/s.
 const FASTEST_ROTATION: f64 = 10_000.0;
 
+/// Longest pipe above a string \[m\]; the longest wells have 15 km.
+const LONGEST_STRING_ABOVE: f64 = 2e4;
+
 /// Axial forces at a bit \[N\], either way: the largest bits carry some 500 kN.
 const USUAL_WEIGHT_ON_BIT: RangeInclusive<f64> = -6e5..=6e5;
 
@@ -67,6 +72,14 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     }
     check_hydraulics(report, scenario);
     check_operation(report, &scenario.operation);
+    report.warn(
+        scenario.operation.top == TopCondition::Continues
+            && scenario.operation.length_above.is_none()
+            && scenario.statics.friction == StartFriction::BreakAway,
+        "statics.friction",
+        "without `operation.length_above` no drive returns the top to its speed: friction that falls from `break_away` to that of sliding leaves \
+         the string turning faster; start from `sliding`",
+    );
     check_contact(report, &scenario.contact);
     report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
     report.not_negative(scenario.damping.stiffness_proportional, "damping.stiffness_proportional");
@@ -219,6 +232,20 @@ fn check_operation(report: &mut Report, operation: &Operation) {
         format!("must be at most {FASTEST_ROTATION} rpm either way"),
     );
     report.usual(speed, "operation.rotation_speed_rpm", &USUAL_ROTATION, "rpm either way");
+    if let Some(length) = operation.length_above {
+        report.number(
+            length,
+            "operation.length_above",
+            |length| length > 0.0 && length <= LONGEST_STRING_ABOVE,
+            format!("must be above 0 and at most {LONGEST_STRING_ABOVE} m"),
+        );
+        report.require(
+            operation.top == TopCondition::Continues,
+            "operation.length_above",
+            length,
+            "there is pipe above the string only if `operation.top` is `continues`",
+        );
+    }
 }
 
 fn check_contact(report: &mut Report, contact: &ContactLaw) {
@@ -373,6 +400,31 @@ mod tests {
         };
         assert_eq!(warnings(backwards), []);
         assert_eq!(warnings(|s| s.operation.rotation_speed_rpm = 0.0), []);
+    }
+
+    #[test]
+    fn pipe_above_the_string_belongs_to_a_top_that_continues() {
+        let continues = |s: &mut drillsweep_scenario::Scenario| {
+            s.operation.top = drillsweep_scenario::TopCondition::Continues;
+            s.statics.friction = drillsweep_scenario::StartFriction::Sliding;
+        };
+        assert_eq!(warnings(continues), []);
+        let found = problem("operation.length_above", |s| s.operation.length_above = Some(500.0));
+        assert!(found.message.contains("`continues`"), "{found}");
+        for length in [0.0, -1.0, 3e4, f64::NAN] {
+            problem("operation.length_above", |s| {
+                continues(s);
+                s.operation.length_above = Some(length);
+            });
+        }
+        let doubted = |length| {
+            warnings(|s| {
+                (s.operation.top, s.operation.length_above) =
+                    (drillsweep_scenario::TopCondition::Continues, length);
+            })
+        };
+        assert_eq!(doubted(None)[0].path, "statics.friction");
+        assert_eq!(doubted(Some(3000.0)), []);
     }
 
     #[test]

@@ -7,10 +7,10 @@ use crate::force::term::{
     fluid_coriolis, fluid_damping, gravity, gyroscopic, mud_drag, structural_damping, torque_stiffening,
     torsion, transient, well_bending,
 };
-use crate::force::{unbalance, wall};
+use crate::force::{cut, unbalance, wall};
 
 /// The accounts of the energy ledger, in the order of its columns.
-pub const ACCOUNTS: [&Account; 8] = [
+pub const ACCOUNTS: [&Account; 9] = [
     &unbalance::WORK,
     &wall::friction_torque::ROTATION,
     &fluid_coriolis::WORK,
@@ -18,6 +18,7 @@ pub const ACCOUNTS: [&Account; 8] = [
     &fluid_damping::DISSIPATED,
     &wall::friction::DISSIPATED,
     &wall::contact::DISSIPATED,
+    &cut::RADIATED,
     CONTACT_WORK,
 ];
 

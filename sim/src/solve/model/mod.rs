@@ -138,11 +138,20 @@ impl Model {
         self.mesh.nodes.len()
     }
 
-    /// Degrees of freedom of node `node` that the top's boundary condition holds at zero.
+    /// Degrees of freedom of node `node` that the top's boundary condition holds at zero in equilibrium.
     pub fn held_by_top(&self, node: usize) -> [bool; DOFS] {
         match (node, self.scenario.operation.top) {
-            (0, TopCondition::Clamped) => [true; DOFS],
+            (0, TopCondition::Clamped | TopCondition::Continues) => [true; DOFS],
             (0, TopCondition::Pinned) => std::array::from_fn(|dof| [U, V, W, THETA_Z].contains(&dof)),
+            _ => [false; DOFS],
+        }
+    }
+
+    /// Degrees of freedom of node `node` that move though the top's boundary condition holds them in equilibrium; there the pipe above carries its
+    /// force of the equilibrium on.
+    pub fn released_in_motion(&self, node: usize) -> [bool; DOFS] {
+        match (node, self.scenario.operation.top) {
+            (0, TopCondition::Continues) => std::array::from_fn(|dof| [W, THETA_Z].contains(&dof)),
             _ => [false; DOFS],
         }
     }

@@ -68,3 +68,71 @@ impl<'a> Receptance<'a> {
         load
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use drillsweep_scenario::{TopCondition, preset};
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::solve::modes::{ModeKind, ModeSearch, modes};
+    use crate::solve::statics::Equilibrium;
+
+    #[test]
+    fn torsional_modes_of_the_published_string_lose_their_energy_through_a_top_that_continues() {
+        let vertical: Vec<Value> = [0.0, 200.0]
+            .map(|depth| json!({ "measured_depth": depth, "inclination_deg": 0.0, "azimuth_deg": 0.0 }))
+            .into();
+        let changes = [
+            ("well.survey", json!(vertical)),
+            ("mud", Value::Null),
+            ("string.unbalance", json!([])),
+            ("operation.weight_on_bit", json!(0.0)),
+            ("operation.torque_on_bit", json!(0.0)),
+            ("damping.mass_proportional", json!(0.0)),
+            ("damping.stiffness_proportional", json!(0.0)),
+            ("effects", json!({ "contact": "off", "torsion": "on", "axial_motion": "off" })),
+        ];
+        let base = preset("paper-200m").unwrap();
+        let scenario =
+            changes.into_iter().fold(base, |scenario, (path, value)| scenario.with(path, value).unwrap());
+        // Transfer matrices of the stepped shaft: held, and with Z_t = I_p sqrt(rho G) at its top. Modes without oscillation that decay are not listed.
+        for (top, wanted) in [
+            (TopCondition::Clamped, vec![(0.0, 2.160), (0.0, 12.853)]),
+            (TopCondition::Continues, vec![(-5.891, 14.372)]),
+        ] {
+            let mut scenario = scenario.clone();
+            scenario.operation.top = top;
+            let model = Model::new(&scenario).unwrap();
+            let equilibrium = Equilibrium::find(&model).unwrap();
+            let search = ModeSearch { to_hz: 16.0, ..ModeSearch::default() };
+            let found = modes(&model, &equilibrium, &search).unwrap();
+            let twist = found.modes.iter().filter(|mode| mode.kind == ModeKind::Torsional);
+            let twist: Vec<_> = twist.map(|mode| (mode.growth_rate, mode.frequency_hz)).collect();
+            assert_eq!(twist.len(), wanted.len(), "{top:?}: {twist:?}");
+            for ((growth, frequency), (wanted_growth, wanted_frequency)) in twist.iter().zip(wanted) {
+                // Rounding of the figures; elements of at most 1.6 m are off by (omega l / c)^2 / 24 < 1e-4.
+                assert!((growth - wanted_growth).abs() < 2e-3, "{top:?}: {twist:?}");
+                assert!((frequency - wanted_frequency).abs() < 2e-3, "{top:?}: {twist:?}");
+            }
+        }
+        // The twist of the bit by a torque that grows as exp(s t) has a pole at s = -5.527 1/s.
+        let mut scenario = scenario;
+        scenario.operation.top = TopCondition::Continues;
+        let model = Model::new(&scenario).unwrap();
+        let pencil = Pencil::about(&model, &Equilibrium::find(&model).unwrap());
+        let twist = |growth: f64| {
+            let factor =
+                ShiftedPencil::new(Complex::new(growth, 0.0), pencil.matrices(), &pencil.held).unwrap();
+            let receptance = Receptance { factor, held: &pencil.held };
+            let mut load = receptance.no_load();
+            load[model.node_count() - 1][THETA_Z] = Complex::new(1.0, 0.0);
+            receptance.to(load)[model.node_count() - 1][THETA_Z].re
+        };
+        let [below, above] = [-5.529, -5.525].map(twist);
+        assert!(
+            below * above < 0.0 && below.abs().min(above.abs()) > 10.0 * twist(-4.5).abs(),
+            "{below} {above}"
+        );
+    }
+}

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::mode::BIT_NOT_JUDGED;
 use crate::force::contact::{sliding_segment, sliding_tangent};
+use crate::math::dof::THETA_Z;
 use crate::solve::model::{Model, element_values};
 use crate::solve::statics::Equilibrium;
 
@@ -61,7 +62,8 @@ pub struct TorsionalMode {
 }
 
 impl UndampedTorsion {
-    /// The assessment of a model about its equilibrium; `None` if twist is not solved for or friction does not turn the string.
+    /// The assessment of a model about its equilibrium; `None` if twist is not solved for, friction does not turn the string, or twist leaves
+    /// through a top that continues.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         Chain::about(model, equilibrium).map(|chain| chain.assessment())
     }
@@ -142,10 +144,12 @@ struct Chain {
 impl Chain {
     fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         let effects = &model.effects;
-        if !(effects.torsion && effects.contact && effects.friction_torque) {
+        if !(effects.torsion && effects.contact && effects.friction_torque)
+            || model.released_in_motion(0)[THETA_Z]
+        {
             return None;
         }
-        // Twist is held at the top by either condition, so node i of the mesh is i - 1 here.
+        // Twist is held at the top, so node i of the mesh is i - 1 here.
         let count = model.node_count() - 1;
         let zero = vec![0.0; count];
         let damping = &model.scenario.damping;

@@ -369,8 +369,8 @@ mod tests {
             _ => 1.0,
         });
         let row = EnergyRow { kinetic: 2.0, stored: -4.0, accounts, ..EnergyRow::default() };
-        // Unbalance, flow, structure and mud count one each.
-        assert_eq!(row.turned_over(), 2.0 + 4.0 + 4.0 + 3.0 + 10.0);
+        // Unbalance, flow, structure, mud and waves at the top count one each.
+        assert_eq!(row.turned_over(), 2.0 + 4.0 + 5.0 + 3.0 + 10.0);
         assert_eq!((row["dissipated_contact"], row["stored"]), (-3.0, -4.0));
     }
 }

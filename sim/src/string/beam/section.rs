@@ -76,6 +76,26 @@ impl BeamSection {
         self.youngs_modulus * self.second_moment
     }
 
+    /// Speed of axial waves sqrt(E / rho) \[m/s\].
+    pub fn axial_wave_speed(&self) -> f64 {
+        (self.youngs_modulus / self.density).sqrt()
+    }
+
+    /// Speed of torsional waves sqrt(G / rho) \[m/s\].
+    pub fn torsional_wave_speed(&self) -> f64 {
+        (self.shear_modulus / self.density).sqrt()
+    }
+
+    /// Force by the speed of an axial wave, S sqrt(rho E) \[N s/m\].
+    pub fn axial_impedance(&self) -> f64 {
+        self.area * (self.density * self.youngs_modulus).sqrt()
+    }
+
+    /// Torque by the speed of a torsional wave, I_p sqrt(rho G) \[N m s\].
+    pub fn torsional_impedance(&self) -> f64 {
+        self.polar_moment() * (self.density * self.shear_modulus).sqrt()
+    }
+
     /// Bending stress at the outer diameter by a moment of 1 N m, D_o / (2 I) \[1/m3\].
     pub fn outer_bending_stress(&self) -> f64 {
         0.5 * self.outer_diameter / self.second_moment

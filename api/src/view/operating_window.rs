@@ -49,7 +49,7 @@ impl OperatingWindow {
     ///
     /// # Errors
     /// Its summary is no JSON object.
-    pub fn push(&mut self, point: PointSummary) -> serde_json::Result<()> {
+    pub fn push(&mut self, point: &PointSummary) -> serde_json::Result<()> {
         let summary: Option<Map<String, Value>> =
             point.summary.as_deref().map(serde_json::from_str).transpose()?;
         let error = point.error.as_ref().map(|error| error.reason.as_str());
@@ -174,7 +174,7 @@ mod tests {
             (4, Some(1.1), 0.02),
             (5, None, 0.0),
         ] {
-            window.push(point(ordinal, severity, error)).unwrap();
+            window.push(&point(ordinal, severity, error)).unwrap();
             points.push(point(ordinal, severity, error)).unwrap();
         }
         let table = window.finish();

@@ -110,7 +110,7 @@ pub(crate) async fn of_sweep(
                 if let (Some(error), true) = (&point.error, failures.len() < MOST_FAILURES) {
                     failures.push(FailedPoint { ordinal: point.ordinal, error: error.clone() });
                 }
-                window.push(point)
+                window.push(&point)
             })?;
             Ok((WindowData::new(window, by, &verified.findings, failures, units), verified))
         })

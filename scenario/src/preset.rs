@@ -21,6 +21,7 @@ presets! {
     "paper-200m-dry": "The same without mud, hence without buoyancy",
     "paper-200m-damped": "The base case with damping that grows with frequency, 3e-5 s, started in equilibrium: torsion above the lowest modes decays",
     "wells/volve-f12": "A whole well: 3,438 m along the planned path of Volve 15/9-F-12 to 53 degrees, 336 joints of drillpipe, a rotary-steerable assembly, 140 rpm",
+    "wells/volve-f12-assembly": "Its lower 219 m with the assembly, below 3,219 m of drillpipe that carries waves to the drive and back",
     "closed/fast-heavy-mud": "The damped base case with 0.04 m3/s of mud of 2100 kg/m3: its largest orbits",
     "closed/building-well": "The damped base case in a well that builds from 25 to 60 degrees",
     "closed/near-horizontal": "The damped base case in a well of 85 to 90 degrees, hardly bent",

@@ -166,8 +166,14 @@ const preload = (() => {
     const url = "/v1/sweeps?dry_run=true";
     const headers = { Accept: "application/json", "Content-Type": "application/json" };
     const answer = fetch(url, { method: "POST", headers, body, signal: abort.signal });
-    answer.catch(() => {});
     dryRun = { url, body, answer, abort };
+    answer.then(
+      ({ status }) => {
+        // The view sends it again once the reader has logged in.
+        if (status === 401 && dryRun?.answer === answer) dryRun = null;
+      },
+      () => {},
+    );
     addEventListener("hashchange", () => (dryRun = null), { once: true });
   }
 

@@ -45,6 +45,36 @@ fn far_from_the_bit_two_elements_a_joint_carry_what_eight_carry() {
     }
 }
 
+#[test]
+fn the_assembly_rests_alone_as_below_the_whole_string() {
+    let part = preset("wells/volve-f12-assembly").expect("it ships with the program");
+    let cut = part.operation.length_above.expect("pipe above");
+    let resting = |scenario: &Scenario| {
+        let model = Model::new(scenario).expect("valid");
+        let equilibrium = Equilibrium::find(&model).expect("rests");
+        (model, equilibrium)
+    };
+    let (whole, part) = (resting(&well()), resting(&part));
+    // The first element below a depth.
+    let force = |(model, equilibrium): &(Model, Equilibrium), depth: f64| {
+        let element =
+            model.mesh.elements.iter().position(|element| element.top >= depth - 1e-6).expect("below");
+        [equilibrium.tension[element], equilibrium.torque[element]]
+    };
+    for depth in [9.6, 149.1, 200.0] {
+        let (of_whole, of_part) = (force(&whole, cut + depth), force(&part, depth));
+        for (whole, part) in of_whole.into_iter().zip(of_part) {
+            assert!((part - whole).abs() < 0.01 * whole.abs().max(1e3), "{part} of {whole} at {depth} m");
+        }
+    }
+    let radius = 0.5 * well().well.hole_diameter;
+    for depth in [218.4, 211.4, 204.4, 189.4, 169.4, 119.4] {
+        let [of_whole, of_part] = [position(&whole, cut + depth), position(&part, depth)];
+        let distance = (of_whole[0] - of_part[0]).hypot(of_whole[1] - of_part[1]);
+        assert!(distance < 0.01 * radius, "{distance} m apart at {depth} m");
+    }
+}
+
 /// Position \[m\] at a depth, linear between nodes.
 fn position((model, equilibrium): &(Model, Equilibrium), depth: f64) -> [f64; 2] {
     let nodes = &model.mesh.nodes;

@@ -31,7 +31,10 @@ export const ACCOUNTS = [...SUPPLIED, ...DISSIPATED, ...HELD, "residual"];
 export function ledger(columns) {
   const last = columns.time.length - 1;
   return {
-    accounts: [...SUPPLIED, ...DISSIPATED, ...HELD].filter((name) => columns[name]),
+    // Waves leave the top of few strings.
+    accounts: [...SUPPLIED, ...DISSIPATED, ...HELD].filter(
+      (name) => columns[name] && (name !== "radiated_top" || columns[name].some(Boolean)),
+    ),
     change: (name) => Number(columns[name][last]) - Number(columns[name][0]),
   };
 }

@@ -48,14 +48,14 @@ export class AccuracyCost {
     const itself = costsOf([{ point, error: own }]);
     const others = costsOf(await (this.#others ??= this.#verified()));
     const report = point.scenario.cost_study ? await (this.#report ??= this.#studied()) : null;
-    fill(
-      this.#study,
-      point.scenario.cost_study ? null : await (this.#link ??= studyLink(point, this.#context.signal)),
-    );
+    const link = point.scenario.cost_study
+      ? null
+      : await (this.#link ??= studyLink(point, this.#context.signal));
+    fill(this.#study, link);
     const study = report && studyCosts(report);
     fill(this.#words, report ? studyParts(report) : null);
     const isEmpty = ![estimated, itself, others, study?.accuracies ?? [], study?.others ?? []].flat().length;
-    this.element.hidden = isEmpty && !report;
+    this.element.hidden = isEmpty && !report && !link;
     /** @type {HTMLElement} */ (this.#picture.parentElement).hidden = isEmpty;
     if (isEmpty) return;
     const times = plan?.accuracies.filter((/** @type {any} */ one) => one.cpu_time) ?? [];

@@ -512,7 +512,9 @@ def test_energies_are_sorted_bars_on_a_logarithmic_scale(opened: Opens, sweep: S
     names = picture.evaluate("place => place.picture.axis('yaxis').words")
     assert picture.evaluate("place => place.picture.axis('xaxis').isLog")
     table = sweep.point(1).energy().to_pandas()
-    sizes = (table.iloc[-1] - table.iloc[0]).abs().drop(["time", "residual", "contact_work"], errors="ignore")
+    # The top of this string is held, so that no wave leaves there.
+    hidden = ["time", "residual", "contact_work", "radiated_top"]
+    sizes = (table.iloc[-1] - table.iloc[0]).abs().drop(hidden, errors="ignore")
     sizes = sizes.sort_values(ascending=False)
     words = {"work_rotation": "work of the rotation", "dissipated_friction": "dissipated by friction"}
     assert [words[name] for name in sizes.index if name in words] == [

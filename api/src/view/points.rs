@@ -64,6 +64,11 @@ impl PointsTable {
         Self { expected: rows, ..Self::default() }
     }
 
+    /// The same for the values of these fields of summaries alone, to which rows are [appended](PointsTable::append).
+    pub fn of_fields(names: &[String], rows: usize) -> Self {
+        Self { kept: Some(names.iter().cloned().collect()), ..Self::for_rows(rows) }
+    }
+
     /// Adds the row of a point.
     ///
     /// # Errors
@@ -88,6 +93,46 @@ impl PointsTable {
         self.error_nodes.push(point.error.as_ref().and_then(|error| error.node).map(i64::from));
         self.errors.push(point.error.map(|error| error.reason));
         Ok(())
+    }
+
+    /// Adds the rows of another table, with the values of the fields that this table keeps.
+    pub fn append(&mut self, other: PointsTable) {
+        let row = self.ordinals.len();
+        self.ordinals.extend(other.ordinals);
+        self.states.extend(other.states);
+        self.has_summary.extend(other.has_summary);
+        self.errors.extend(other.errors);
+        self.error_times.extend(other.error_times);
+        self.error_nodes.extend(other.error_nodes);
+        for (own, others) in [(&mut self.parameters, other.parameters), (&mut self.biases, other.biases)] {
+            for (name, values) in others {
+                let column = own.entry(name).or_default();
+                column.resize(row, f64::NAN);
+                column.extend(values);
+            }
+        }
+        for (name, column) in other.fields {
+            let is_kept = self.kept.as_ref().is_none_or(|kept| kept.contains(&name));
+            let field = self.fields.entry(name).or_default();
+            let Some(column) = column else { continue };
+            if is_kept {
+                for (value, row) in values(column).zip(row..) {
+                    put_field(field, row, self.expected, value);
+                }
+            } else if let Some(value) = values(column).find(|value| !value.is_null()) {
+                widened(field, &value, 0);
+            }
+        }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.ordinals.len()
+    }
+
+    /// True without a row.
+    pub fn is_empty(&self) -> bool {
+        self.ordinals.is_empty()
     }
 
     /// The table with the values of these fields of summaries alone; columns of the others stay empty, of the same kind.
@@ -293,6 +338,16 @@ fn widened<'c>(field: &'c mut Option<Column>, value: &Value, expected: usize) ->
     field.as_mut()
 }
 
+/// Values of a column in order; null for missing ones.
+fn values(column: Column) -> Box<dyn Iterator<Item = Value>> {
+    match column {
+        Column::Integer(values) => Box::new(values.into_iter().map(Value::from)),
+        Column::Number(values) => Box::new(values.into_iter().map(Value::from)),
+        Column::Single(values) => Box::new(values.into_iter().map(Value::from)),
+        Column::Text(values) => Box::new(values.into_iter().map(Value::from)),
+    }
+}
+
 /// Missing values up to this many rows.
 fn fill(column: &mut Column, rows: usize) {
     match column {
@@ -452,6 +507,18 @@ mod tests {
         table
     }
 
+    fn succeeded(summaries: &[Value]) -> Vec<PointSummary> {
+        let point = |(summary, ordinal): (&Value, u32)| PointSummary {
+            ordinal,
+            state: PointState::Succeeded,
+            parameters: [("mud_density".to_owned(), f64::from(ordinal))].into(),
+            summary: Some(summary.to_string()),
+            biases: IndexMap::new(),
+            error: None,
+        };
+        summaries.iter().zip(1..).map(point).collect()
+    }
+
     fn table(points: impl IntoIterator<Item = PointSummary>) -> Table {
         of_points(points).finish(None)
     }
@@ -466,19 +533,11 @@ mod tests {
             json!({"largest_lateral_acceleration_rms": 0.1, "motion_regime": "regular"}),
             json!({}),
         ];
-        let points = summaries.iter().zip(1..).map(|(summary, ordinal)| PointSummary {
-            ordinal,
-            state: PointState::Succeeded,
-            parameters: IndexMap::new(),
-            summary: Some(summary.to_string()),
-            biases: IndexMap::new(),
-            error: None,
-        });
         let class = |summary: &Value| {
             Some(Judgement::of_row(summary.as_object().unwrap(), &limits).class.name().to_owned())
         };
         let expected: Vec<Option<String>> = summaries.iter().map(class).collect();
-        assert_eq!(of_points(points).classes(&limits), expected);
+        assert_eq!(of_points(succeeded(&summaries)).classes(&limits), expected);
         assert_eq!(expected.iter().collect::<HashSet<_>>().len(), 5, "of five kinds: {expected:?}");
     }
 
@@ -489,15 +548,7 @@ mod tests {
             json!({"whole": null, "number": 0.5, "words": "b", "text": [0.5]}),
             json!({"number": 2, "words": 3, "late": 7, "nothing": null}),
         ];
-        let points = fields.into_iter().zip(1..).map(|(summary, ordinal)| PointSummary {
-            ordinal,
-            state: PointState::Succeeded,
-            parameters: IndexMap::new(),
-            summary: Some(summary.to_string()),
-            biases: IndexMap::new(),
-            error: None,
-        });
-        let points: Vec<PointSummary> = points.collect();
+        let points = succeeded(&fields);
         let table = table(points.clone());
         assert_eq!(table.columns["whole"], Column::Integer(vec![Some(1), None, None]));
         assert_eq!(table.columns["number"], Column::Number(vec![1.0, 0.5, 2.0]));
@@ -511,7 +562,19 @@ mod tests {
         );
 
         // A table that keeps some of them has the same columns, empty but for those.
-        let part = of_points(points).keeping(&["words".to_owned(), "none".to_owned()]).finish(None);
+        let kept = ["words".to_owned(), "none".to_owned()];
+        let part = of_points(points.clone()).keeping(&kept).finish(None);
+
+        // Tables of its rows one by one make up the same.
+        let [mut appended, mut whole] = [PointsTable::of_fields(&kept, 3), PointsTable::for_rows(3)];
+        for point in &points {
+            appended.append(of_points([point.clone()]));
+            whole.append(of_points([point.clone()]));
+        }
+        // As JSON, in which missing numbers are equal.
+        let json = |table: &Table| serde_json::to_value(table).unwrap();
+        assert_eq!(json(&appended.finish(None)), json(&part));
+        assert_eq!(json(&whole.finish(None)), json(&table));
         assert_eq!(part.without_rows().columns, table.without_rows().columns);
         assert!(part.columns.keys().eq(table.columns.keys()), "in the same order");
         assert_eq!(part.columns["words"], table.columns["words"]);

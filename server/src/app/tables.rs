@@ -34,6 +34,11 @@ impl Tables {
         Self(Cache::with_weighter(USUAL, MEMORY, Size))
     }
 
+    /// True if a table fits, by the memory of an answer from it, of which its values are half \[bytes\].
+    pub(crate) fn fits(memory: u64) -> bool {
+        memory / 2 <= MEMORY
+    }
+
     /// Table of a sweep at a version, read if it is not kept; while one request reads it, others wait for it. Blocks.
     ///
     /// # Errors

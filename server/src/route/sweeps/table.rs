@@ -14,7 +14,6 @@ use drillsweep_store::WorkState;
 use drillsweep_table::tables;
 use indexmap::IndexSet;
 use serde::Deserialize;
-use tokio::runtime::Handle;
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
@@ -25,7 +24,7 @@ use crate::answer::stored::Stored;
 use crate::answer::{recordings, records};
 use crate::app::App;
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
-use crate::route::verification::{Verified, memory_of_points};
+use crate::route::verification::SweepPoints;
 
 /// Query of the table of a sweep.
 #[derive(Deserialize, utoipa::IntoParams)]
@@ -115,9 +114,7 @@ pub(crate) async fn table(
     let key =
         Tag::of(&form, &("map", &id, sweep.version, &sweep.name, &fields, &limits, signs, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
-    let total = sweep.counts.total.unsigned_abs();
-    let memory = memory_of_points(&app, &id, total).await?;
-    let verified = Verified::load(&app.store, &id).await?;
+    let (points, verified) = SweepPoints::of(&app, &sweep).await?;
     let nodes = match format.is_picture() {
         true => nodes_of(fields.as_deref().unwrap_or_default()),
         false => Vec::new(),
@@ -126,17 +123,18 @@ pub(crate) async fn table(
         true => None,
         false => statics_of_first(&app, &id).await?,
     };
-    let (runtime, store, tables) = (Handle::current(), app.store.clone(), app.tables.clone());
-    app.answer(format, key.as_str(), memory, move || {
-        let read = || verified.points(&store, &id, total, &runtime);
-        let points = tables.get_or_read(&id, sweep.version, read)?;
+    app.answer(format, key.as_str(), points.memory, move || {
         // A picture needs more than the requested columns.
-        let kept = fields.as_deref().filter(|_| !format.is_picture());
-        let is_judged = kept.is_none_or(|kept| kept.iter().any(|name| name == CLASS.name));
-        let classes = if is_judged { points.classes(&limits) } else { Vec::new() };
-        let points = match kept {
-            Some(kept) => points.keeping(kept),
-            None => Arc::unwrap_or_clone(points),
+        let (points, classes) = match fields.as_deref().filter(|_| !format.is_picture()) {
+            Some(kept) => {
+                let is_judged = kept.iter().any(|name| name == CLASS.name);
+                points.selected(kept, is_judged.then_some(&limits))?
+            }
+            None => {
+                let points = points.whole()?;
+                let classes = points.classes(&limits);
+                (Arc::unwrap_or_clone(points), classes)
+            }
         };
         let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
         if let Some(statics) = statics
@@ -197,15 +195,12 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     if let Some(columns) = app.columns.get(&id, sweep.version) {
         return Ok(Json(columns));
     }
-    let total = sweep.counts.total.unsigned_abs();
-    let place = app.view(memory_of_points(&app, &id, total).await?).await?;
-    let verified = Verified::load(&app.store, &id).await?;
-    let runtime = Handle::current();
+    let (points, _) = SweepPoints::of(&app, &sweep).await?;
+    let place = app.view(points.memory).await?;
     place
         .run(move || {
-            let read = || verified.points(&app.store, &id, total, &runtime);
-            let points = app.tables.get_or_read(&id, sweep.version, read)?;
-            let columns = ColumnList::of(&points.keeping(&[]).finish(Some(Vec::new())));
+            let (points, _) = points.selected(&[], None)?;
+            let columns = ColumnList::of(&points.finish(Some(Vec::new())));
             app.columns.put(id, sweep.version, columns.clone());
             Ok(Json(columns))
         })

@@ -6,11 +6,9 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::Signs;
 use drillsweep_api::judgement::LimitChanges;
-use drillsweep_api::view::operating_window::OperatingWindow;
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::CLASS;
 use serde::Deserialize;
-use tokio::runtime::Handle;
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
@@ -19,7 +17,7 @@ use crate::answer::format::{Answer, Form, PictureFormat};
 use crate::answer::records;
 use crate::app::App;
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
-use crate::route::verification::{Verified, memory_of_points};
+use crate::route::verification::SweepPoints;
 
 /// Query of an operating window.
 #[derive(Deserialize, utoipa::IntoParams)]
@@ -74,13 +72,9 @@ pub(crate) async fn window(
     let limits = app.config.operating_limits.with(&limits);
     let slice = slice.unwrap_or_default();
     let key = Tag::of(&form, &("window", &id, sweep.version, &sweep.name, &limits, signs, &slice));
-    let total = sweep.counts.total.unsigned_abs();
-    let memory = memory_of_points(&app, &id, total).await?;
-    let verified = Verified::load(&app.store, &id).await?;
-    let (runtime, store, tables) = (Handle::current(), app.store.clone(), app.tables.clone());
-    app.answer(format, key.as_str(), memory, move || {
-        let read = || verified.points(&store, &id, total, &runtime);
-        let window = OperatingWindow::of_table(&*tables.get_or_read(&id, sweep.version, read)?, limits);
+    let (points, verified) = SweepPoints::of(&app, &sweep).await?;
+    app.answer(format, key.as_str(), points.memory, move || {
+        let window = points.window(limits)?;
         let parameters = window.parameters().map(str::to_owned).collect();
         let table = signs.of_table(window.finish());
         let fields = format.is_picture().then(|| vec![CLASS.name.to_owned()]);

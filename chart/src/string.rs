@@ -57,8 +57,7 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
         hole,
         parts,
         gauges: scenario
-            .string
-            .gauges
+            .gauges()
             .iter()
             .map(|gauge| {
                 let hole = scenario.hole_at(gauge.measured_depth).diameter;

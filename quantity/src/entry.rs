@@ -323,6 +323,10 @@ static FAMILIES: &[Family] = &[
         ],
     },
     Family {
+        dimension: "mass per length",
+        units: &[unit(&["kg/m"], "1"), quotient(&["lb/ft", "lbm/ft", "ppf"], "0.45359237", "0.3048")],
+    },
+    Family {
         dimension: "density",
         units: &[
             unit(&["kg/m3"], "1"),

@@ -25,6 +25,21 @@ pub(super) static ALL: &[Quantity] = &[
     field("string.sections.length", "", Some(&units::DEPTH), "section length"),
     field("string.sections.outer_diameter", "D_o", Some(&units::WIDTH), "outer diameter"),
     field("string.sections.inner_diameter", "D_i", Some(&units::WIDTH), "inner diameter"),
+    field("string.sections.mass_per_length", "m", Some(&units::MASS_PER_LENGTH), "mass per length"),
+    field(
+        "string.sections.stiffness_outer_diameter",
+        "",
+        Some(&units::WIDTH),
+        "outer diameter of the stiffness",
+    ),
+    field(
+        "string.sections.stiffness_inner_diameter",
+        "",
+        Some(&units::WIDTH),
+        "inner diameter of the stiffness",
+    ),
+    field("string.sections.blade_diameter", "", Some(&units::WIDTH), "blade diameter"),
+    field("string.sections.blade_above_end", "", Some(&units::DEPTH), "height of the blades"),
     field("string.sections.tool_joint.length", "", Some(&units::DEPTH), "tool joint length"),
     field(
         "string.sections.tool_joint.outer_diameter",

@@ -180,6 +180,8 @@ pub static ANGULAR_SPEED: Units = units("angular speed", "rad/s", ("rpm", 6.0 * 
 pub static SPEED_OF_ROTATION: Units = units("angular speed", "rpm", ("rpm", 1.0));
 /// Masses.
 pub static MASS: Units = units("mass", "kg", ("lb", POUND));
+/// Masses of a length of string.
+pub static MASS_PER_LENGTH: Units = units("mass per length", "kg/m", ("lb/ft", POUND / FOOT));
 /// Densities of muds.
 pub static MUD_DENSITY: Units = units("density", "kg/m3", ("ppg", POUND / GALLON));
 /// Densities of solids.
@@ -250,6 +252,7 @@ mod tests {
             (&POWER, "hp", 745.699_9, 7),
             (&ACCELERATION, "g", 9.806_65, 15),
             (&MASS, "lb", 0.453_592_37, 15),
+            (&MASS_PER_LENGTH, "lb/ft", 1.488_164, 7),
             (&SPEED, "ft/s", 0.3048, 15),
             (&ANGLE, "deg", 0.017_453_29, 7),
             (&ANGULAR_SPEED, "rpm", 0.104_719_8, 7),

@@ -118,6 +118,9 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
         true => format!("{least} to {largest}°"),
         false => format!("{largest}°"),
     };
+    let mass: f64 = scenario.string.sections.iter().map(|section| scenario.string.mass(section)).sum();
+    let unit = units::MASS.of(system);
+    let weight = format!("{} {}", crate::reading::number(unit.of(mass)), unit.text());
     let rows = [
         ("hole diameter", amount("well.hole_diameter", scenario.well.hole_diameter, system)),
         ("hole sections", hole_sections(scenario, system)),
@@ -125,7 +128,8 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
         ("surveyed to", survey.last().map_or(NONE.to_owned(), |last| depth(last.measured_depth))),
         ("inclination", range),
         ("string length", depth(length(&scenario.string.sections))),
-        ("gauges", scenario.string.gauges.len().to_string()),
+        ("string in air", weight),
+        ("gauges", scenario.gauges().len().to_string()),
         ("unbalance masses", scenario.string.unbalance.len().to_string()),
     ];
     facts("Well and string", rows.into_iter().map(|(name, value)| (name.to_owned(), value)))
@@ -157,6 +161,7 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
     let (above, listed) = sections.split_at(sections.len() - shown);
     let symbol = |name: &str| unit(name, system).map_or(String::new(), |unit| unit.text());
     let (along, across) = (symbol(MEASURED_DEPTH.name), symbol(OUTER_DIAMETER.name));
+    let weight = units::MASS.of(system).text();
     let bare = |units: &units::Units, value: f64| crate::reading::number(units.of(system).of(value));
     let mut bottom = length(above);
     let rows: Vec<(&Section, f64, f64)> = listed
@@ -173,15 +178,16 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
         }
         table {
             thead { tr {
-                th { "section" } th.n { "pieces" } th.n { "length [" (along) "]" } th.n { "to depth [" (along) "]" }
+                th { "section" } th.n { "pieces" } th.n { "in air [" (weight) "]" } th.n { "length [" (along) "]" } th.n { "to depth [" (along) "]" }
                 th.n { (words(OUTER_DIAMETER.name)) " [" (across) "]" } th.n { (words(INNER_DIAMETER.name)) " [" (across) "]" }
                 th.n { "tool joints [" (across) "]" }
             } }
             tbody {
                 @for (section, piece, bottom) in rows {
                     tr {
-                        td { (kind(section.kind)) }
+                        td { (if section.name.is_empty() { kind(section.kind) } else { &section.name }) }
                         td.n { (section.count) }
+                        td.n { (bare(&units::MASS, scenario.string.mass(section))) }
                         td.n { (bare(&units::DEPTH, piece)) }
                         td.n { (bare(&units::DEPTH, bottom)) }
                         td.n { (bare(&units::WIDTH, section.outer_diameter)) }

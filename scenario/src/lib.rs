@@ -4,6 +4,7 @@
 //! refused. The types define valid documents; `drillsweep_sim::validation` checks that they can be simulated.
 
 mod accuracy;
+mod catalogue;
 mod compose;
 mod effects;
 mod failure;
@@ -17,6 +18,7 @@ mod outputs;
 mod preset;
 mod problem;
 mod request;
+mod section;
 mod set;
 mod snapshots;
 mod statics;
@@ -25,6 +27,7 @@ mod study;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
+pub use catalogue::CATALOGUE;
 pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use failure::{FailureClass, PointError};
@@ -36,6 +39,7 @@ pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
 pub use problem::{Problem, Problems, Warning};
 pub use request::{MOST_PROBLEMS, ScenarioRequest};
+pub use section::{BLADE_CLEARANCE, Section, SectionKind, ToolJoint, Tube, WrittenSection};
 pub use snapshots::Snapshots;
 pub use statics::{StartFriction, Starts, Statics};
 pub use strict::read_strictly;
@@ -135,8 +139,9 @@ pub struct DrillString {
     /// The steel (or other material) of every section and tool joint that has none of its own.
     pub material: Material,
     /// Sections from the top down, 1 or more, together no longer than the survey.
+    #[schema(value_type = Vec<WrittenSection>)]
     pub sections: Vec<Section>,
-    /// Points at which a blade or the bit narrows the clearance; none by default. Each has a node. Without them stabilizers touch the
+    /// Points at which the clearance is given; none by default. Each has a node. Without them, and without blades of sections, stabilizers touch the
     /// wall with their bodies only.
     #[serde(default)]
     pub gauges: Vec<Gauge>,
@@ -144,18 +149,6 @@ pub struct DrillString {
     /// of rotation.
     #[serde(default)]
     pub unbalance: Vec<UnbalanceMass>,
-}
-
-impl DrillString {
-    /// Material of the bodies of a section.
-    pub fn body_material(&self, section: &Section) -> Material {
-        section.material.unwrap_or(self.material)
-    }
-
-    /// Material of a tool joint of a section.
-    pub fn joint_material(&self, section: &Section, joint: &ToolJoint) -> Material {
-        joint.material.unwrap_or_else(|| self.body_material(section))
-    }
 }
 
 /// Linear elastic material. Values for the usual materials, with their source, are in docs/model/beam.md, Section.
@@ -228,69 +221,8 @@ impl Grade {
 /// A thousand pounds-force per square inch: 4,448.2216152605 N on 0.0254^2 m2.
 const PASCALS_PER_KSI: f64 = 4_448.221_615_260_5 / (0.0254 * 0.0254);
 
-/// `count` equal pieces of pipe, one after the other.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Section {
-    /// Kind of the section; it decides which target element length holds, and nothing else.
-    pub kind: SectionKind,
-    /// Number of equal pieces, each of `length`; 1 unless given.
-    #[serde(default = "one")]
-    pub count: u32,
-    /// Length of one piece \[m\], above 0, tool joints included; usual 9 to 9.6 for a drillpipe or collar, 1 to 3 for a stabilizer,
-    /// 0.2 to 0.5 for a bit.
-    pub length: f64,
-    /// Outer diameter of the body \[m\], smaller than the hole; usual 0.089 to 0.168 for drillpipe, 0.12 to 0.24 for collars;
-    /// below 0.02 and above 1.2 is warned of. Bending and torsional stiffness grow with its fourth power; the nearer to the hole, the more added mass and the less room
-    /// for whirl.
-    pub outer_diameter: f64,
-    /// Inner diameter of the body \[m\], 0 to below the outer; usual 0.07 to 0.15 for drillpipe, 0.05 to 0.08 for collars. A narrow
-    /// bore raises the speed of the mud and the pressure that it takes.
-    pub inner_diameter: f64,
-    /// Tool joints at both ends of each piece; absent means a plain body.
-    #[serde(default)]
-    pub tool_joint: Option<ToolJoint>,
-    /// Material of the section, such as aluminium or non-magnetic steel; absent means the string's material. A lighter and
-    /// softer section bends more easily into the hole and presses less on its wall.
-    #[serde(default)]
-    pub material: Option<Material>,
-}
-
 fn one() -> u32 {
     1
-}
-
-/// The kinds of section that a mesh distinguishes: `drillpipe` (heavy-weight drillpipe too), `collar`, `stabilizer` (its body; its
-/// blades are a gauge) and `bit`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SectionKind {
-    /// Drillpipe (or heavy-weight drillpipe).
-    Drillpipe,
-    /// Drill collar.
-    Collar,
-    /// Stabilizer; its body is meshed as given, its blades are a [`Gauge`].
-    Stabilizer,
-    /// Bit.
-    Bit,
-}
-
-/// A tool joint, one at each end of a piece of pipe.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ToolJoint {
-    /// Length of one joint \[m\], less than half of the piece; usual 0.2 to 0.4. Where joints rest on the wall, orbits of the pipe
-    /// between them depend on how finely they are meshed.
-    pub length: f64,
-    /// Outer diameter \[m\], smaller than the hole; usual 0.12 to 0.21. Larger than the body's, it keeps the body off the wall; a
-    /// smaller one is warned of.
-    pub outer_diameter: f64,
-    /// Inner diameter \[m\], 0 to below the outer; usual 0.05 to 0.13, at most that of the body.
-    pub inner_diameter: f64,
-    /// Material of the joint; absent means that of its section. Aluminium pipe usually has joints of steel, whose weight
-    /// it feels.
-    #[serde(default)]
-    pub material: Option<Material>,
 }
 
 /// A place at which the radial clearance is given instead of following from the diameters

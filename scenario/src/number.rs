@@ -121,7 +121,8 @@ numbers!(HoleSection: from, hole_diameter, static_friction, dynamic_friction; wi
 numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
 numbers!(DrillString: material, sections, gauges, unbalance);
 numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
-numbers!(Section: length, outer_diameter, inner_diameter, tool_joint, material; without kind, count);
+numbers!(Section: length, outer_diameter, inner_diameter, mass_per_length, stiffness_outer_diameter, stiffness_inner_diameter,
+    blade_diameter, blade_above_end, tool_joint, material; without name, kind, count, grade);
 numbers!(ToolJoint: length, outer_diameter, inner_diameter, material);
 numbers!(Gauge: measured_depth, clearance);
 numbers!(UnbalanceMass: measured_depth, mass, radius, phase_deg);

@@ -188,7 +188,7 @@ fn well(scenario: &Scenario) -> Value {
     value(&well)
 }
 
-/// String with a material in every section and tool joint, in place of one of its own.
+/// String without names, with a material and its grade in every section and tool joint in place of its own.
 fn string(scenario: &Scenario) -> Value {
     let mut string = scenario.string.clone();
     for section in &mut string.sections {
@@ -197,6 +197,8 @@ fn string(scenario: &Scenario) -> Value {
             ..joint
         });
         section.material = Some(scenario.string.body_material(section));
+        section.grade = None;
+        section.name.clear();
     }
     let mut string = fields(&string);
     string.remove("material");
@@ -655,7 +657,13 @@ mod tests {
             ".hydraulics.surface_case",
             ".operation.length_above",
             ".string.material.grade",
+            ".string.sections.blade_above_end",
+            ".string.sections.blade_diameter",
+            ".string.sections.grade",
+            ".string.sections.mass_per_length",
             ".string.sections.material.grade",
+            ".string.sections.stiffness_inner_diameter",
+            ".string.sections.stiffness_outer_diameter",
             ".string.sections.tool_joint.material.grade",
             ".well.section.dynamic_friction",
             ".well.section.hole_diameter",

@@ -162,7 +162,7 @@ fn soft_string(model: &Model, equilibrium: &Equilibrium) -> SoftString {
         let buoyed = section.density * section.area
             + mud.map_or(0.0, |m| m.density * (section.bore_area() - section.displaced_area()));
         let drag = equilibrium.drag.get(e).copied().unwrap_or(0.0);
-        let contact_radius = 0.5 * element.outer_diameter;
+        let contact_radius = 0.5 * element.tube.outer_diameter;
         for i in (0..parts).rev() {
             let ds = element.length / f64::from(parts);
             let s = element.top + (f64::from(i) + 0.5) * ds;

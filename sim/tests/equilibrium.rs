@@ -25,15 +25,8 @@ fn horizontal(length: f64, diameters: [f64; 2], element: f64) -> Scenario {
         .map(|measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 })
         .to_vec();
     let [outer_diameter, inner_diameter] = diameters;
-    scenario.string.sections = vec![Section {
-        kind: SectionKind::Collar,
-        count: 1,
-        length,
-        outer_diameter,
-        inner_diameter,
-        tool_joint: None,
-        material: None,
-    }];
+    scenario.string.sections =
+        vec![Section::plain(SectionKind::Collar, length, outer_diameter, inner_diameter)];
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();
     scenario.recording.nodes.clear();
@@ -175,8 +168,8 @@ fn steel_and_aluminium(lengths: [f64; 2]) -> (Scenario, [BeamSection; 2]) {
     let mut scenario = horizontal(lengths[0] + lengths[1], diameters, 0.5);
     scenario.effects.set(Effect::Contact, Switch::Off);
     scenario.operation.weight_on_bit = 0.0;
-    let steel = scenario.string.sections[0];
-    let [upper, lower] = lengths.map(|length| Section { length, ..steel });
+    let steel = scenario.string.sections[0].clone();
+    let [upper, lower] = lengths.map(|length| Section { length, ..steel.clone() });
     scenario.string.sections = vec![upper, Section { material: Some(ALUMINIUM), ..lower }];
     let beams = [scenario.string.material, ALUMINIUM]
         .map(|material| BeamSection::pipe(diameters[0], diameters[1], &material));

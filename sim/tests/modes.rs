@@ -293,7 +293,7 @@ fn cantilever_conveying_fluid_flutters_at_the_published_speed() {
 fn opposite_flows_cancel_in_a_pipe_of_a_third_of_the_holes_area() {
     let with_ratio = |ratio: f64, coriolis: Switch| {
         let mut scenario = preset("hard/vertical").expect("shipped preset");
-        let mut pipe = scenario.string.sections[0];
+        let mut pipe = scenario.string.sections[0].clone();
         pipe.outer_diameter = ratio * scenario.well.hole_diameter;
         (pipe.length, pipe.count, pipe.tool_joint) = (200.0, 1, None);
         scenario.string.sections = vec![pipe];
@@ -366,7 +366,7 @@ fn twist_of_a_driven_shaft_is_a_standing_wave() {
     scenario.contact.static_friction = 0.0;
     scenario.contact.dynamic_friction = 0.0;
     scenario.effects.set(Effect::Torsion, Switch::On);
-    let mut pipe = scenario.string.sections[0];
+    let mut pipe = scenario.string.sections[0].clone();
     (pipe.length, pipe.count, pipe.tool_joint) = (200.0, 1, None);
     scenario.string.sections = vec![pipe];
     scenario.string.gauges.clear();
@@ -520,8 +520,8 @@ fn a_rod_of_two_materials_has_the_modes_of_a_stepped_rod() {
         (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
     }
     let aluminium = Material { youngs_modulus: 7.3e10, density: 2800.0, poissons_ratio: 0.33, grade: None };
-    let (steel, collar) = (scenario.string.material, scenario.string.sections[2]);
-    let section = |length, material| Section { length, count: 1, material, ..collar };
+    let (steel, collar) = (scenario.string.material, scenario.string.sections[2].clone());
+    let section = |length, material| Section { length, count: 1, material, ..collar.clone() };
     scenario.string.sections = vec![section(90.0, None), section(110.0, Some(aluminium))];
     scenario.string.unbalance.clear();
     scenario.operation.weight_on_bit = -1e4;
@@ -573,7 +573,7 @@ fn a_pull_raises_lateral_frequencies_as_tensioned_beams_have_them() {
     for station in &mut scenario.well.survey {
         (station.inclination_deg, station.azimuth_deg) = (0.0, 0.0);
     }
-    scenario.string.sections = vec![Section { length, count: 1, ..scenario.string.sections[0] }];
+    scenario.string.sections = vec![Section { length, count: 1, ..scenario.string.sections[0].clone() }];
     (scenario.string.gauges, scenario.string.unbalance) = (Vec::new(), Vec::new());
     scenario.mesh.lengths_mut().expect("has target lengths").drillpipe = 0.5;
     (scenario.operation.rotation_speed_rpm, scenario.operation.torque_on_bit) = (0.0, 0.0);
@@ -661,7 +661,8 @@ fn straight_strings_have_the_modes_of_rods_unless_they_are_switched_off() {
     for station in &mut scenario.well.survey {
         (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
     }
-    scenario.string.sections = vec![Section { length: 200.0, count: 1, ..scenario.string.sections[2] }];
+    scenario.string.sections =
+        vec![Section { length: 200.0, count: 1, ..scenario.string.sections[2].clone() }];
     scenario.string.unbalance.clear();
     (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
     let active = active_effects(&scenario);
@@ -703,7 +704,7 @@ fn a_buckled_column_on_the_axis_leaves_it_as_beam_theory_says() {
         (station.inclination_deg, station.azimuth_deg) = (90.0, 0.0);
     }
     scenario.string.sections =
-        vec![Section { length, count: 1, tool_joint: None, ..scenario.string.sections[2] }];
+        vec![Section { length, count: 1, tool_joint: None, ..scenario.string.sections[2].clone() }];
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();
     scenario.recording.nodes.clear();

@@ -104,7 +104,8 @@ fn torque_of_a_rubbing_string_is_torsional_stiffness_times_twist() {
     let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio));
     let mut largest_change: f64 = 0.0;
     for (e, (element, ends)) in model.mesh.elements.iter().zip(histories.windows(2)).enumerate() {
-        let polar_moment = PI / 32.0 * (element.outer_diameter.powi(4) - element.inner_diameter.powi(4));
+        let polar_moment =
+            PI / 32.0 * (element.tube.outer_diameter.powi(4) - element.tube.inner_diameter.powi(4));
         let stiffness = shear_modulus * polar_moment / element.length;
         let below = &ends[1].torque;
         for ((torque, top), bottom) in below.iter().zip(&ends[0].theta_z).zip(&ends[1].theta_z) {

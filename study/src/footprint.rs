@@ -71,7 +71,8 @@ impl Footprint {
         let of_finer_meshes = if is_refined { PER_NODE_OF_FINER_MESHES } else { 0 };
         // As they are and encoded in a checkpoint.
         let of_loads = if model.effects.transient { 2 * LOAD_BYTES } else { 0 };
-        let graded = model.mesh.elements.iter().filter(|element| element.material.grade.is_some()).count();
+        let graded =
+            model.mesh.elements.iter().filter(|element| element.tube.material.grade.is_some()).count();
         let of_cycles = if model.effects.transient { 2 * CYCLE_BYTES * graded as u64 } else { 0 };
         Self {
             memory_bytes: (PER_NODE + of_finer_meshes + of_loads) * model.node_count() as u64

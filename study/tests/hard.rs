@@ -82,7 +82,7 @@ impl ScenarioRun {
         let mud = scenario.mud.as_ref().map_or(0.0, |mud| mud.density);
         let area = |diameter: f64| 0.25 * PI * diameter * diameter;
         let elements = self.model.mesh.elements.iter().map(|element| {
-            let (outer, inner) = (area(element.outer_diameter), area(element.inner_diameter));
+            let (outer, inner) = (area(element.tube.outer_diameter), area(element.tube.inner_diameter));
             let steel = scenario.string.material.density * (outer - inner);
             (steel + mud * (inner - outer)) * GRAVITY * element.length
         });

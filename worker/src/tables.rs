@@ -295,8 +295,8 @@ fn profile(model: &Model, equilibrium: &Equilibrium) -> Table {
     integers(&mut table, &ELEMENT, (1..=elements.len()).map(|number| number as i64));
     numbers(&mut table, &MEASURED_DEPTH_TOP, elements.iter().map(|e| e.top));
     numbers(&mut table, &MEASURED_DEPTH_BOTTOM, elements.iter().map(|e| e.top + e.length));
-    numbers(&mut table, &OUTER_DIAMETER, elements.iter().map(|e| e.outer_diameter));
-    numbers(&mut table, &INNER_DIAMETER, elements.iter().map(|e| e.inner_diameter));
+    numbers(&mut table, &OUTER_DIAMETER, elements.iter().map(|e| e.tube.outer_diameter));
+    numbers(&mut table, &INNER_DIAMETER, elements.iter().map(|e| e.tube.inner_diameter));
     numbers(&mut table, &EFFECTIVE_TENSION, equilibrium.tension.iter().copied());
     numbers(&mut table, &BUCKLING_RATIO, buckling_ratios(model, &equilibrium.tension).into_iter());
     numbers(&mut table, &TORQUE, equilibrium.torque.iter().copied());

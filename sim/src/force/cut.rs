@@ -24,8 +24,7 @@ pub(crate) const ENTRY: &str = "work_top";
 pub(super) fn force(context: &ForceContext<'_>) -> Option<Arc<dyn NodalForce>> {
     let (string, operation) = (&context.scenario.string, &context.scenario.operation);
     let section = string.sections.first().filter(|_| operation.top == TopCondition::Continues)?;
-    let pipe =
-        BeamSection::pipe(section.outer_diameter, section.inner_diameter, &string.body_material(section));
+    let pipe = BeamSection::of(&string.body(section));
     let line = |dof, impedance, speed: f64| Line {
         dof,
         impedance,

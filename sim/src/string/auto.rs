@@ -40,11 +40,7 @@ pub(super) fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -
         let elements = if is_far(scenario, piece) { FAR_BODY_ELEMENTS } else { BODY_ELEMENTS };
         return ((section.length - 2.0 * joint.length) / elements, joint.length / JOINT_ELEMENTS);
     }
-    let pipe = BeamSection::pipe(
-        section.outer_diameter,
-        section.inner_diameter,
-        &scenario.string.body_material(section),
-    );
+    let pipe = BeamSection::of(&scenario.string.body(section));
     let spread = (4.0 * pipe.bending_stiffness() / scenario.contact.stiffness_of_a_metre()).powf(0.25);
     let target = spread / ELEMENTS_A_SPREAD;
     (target, target)

@@ -1,7 +1,7 @@
 //! Places at which the string must have nodes.
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, Material, Scenario, Section, SectionKind, WrittenOutMesh,
+    DrillString, ElementLengths, Scenario, Section, SectionKind, Tube, WrittenOutMesh,
 };
 
 use super::auto;
@@ -47,9 +47,9 @@ pub(crate) struct UniformPart {
     /// Measured depth of the lower end \[m\].
     pub(crate) bottom: f64,
     pub(crate) kind: ElementKind,
-    pub(crate) outer_diameter: f64,
-    pub(crate) inner_diameter: f64,
-    pub(crate) material: Material,
+    pub(crate) tube: Tube,
+    /// Index of its section.
+    pub(crate) section: usize,
     /// Target element length \[m\].
     pub(crate) target: f64,
 }
@@ -77,7 +77,7 @@ pub(crate) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshErr
             let top = section_top + f64::from(piece) * section.length;
             let bottom = section_top + f64::from(piece + 1) * section.length;
             let targets = targets(section, scenario, [top, bottom]);
-            push_piece(&mut stretches, &scenario.string, section, targets, [top, bottom]);
+            push_piece(&mut stretches, &scenario.string, index, targets, [top, bottom]);
         }
         section_top += f64::from(section.count) * section.length;
     }
@@ -111,34 +111,25 @@ fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -> (f64, f64
 fn push_piece(
     stretches: &mut Vec<UniformPart>,
     string: &DrillString,
-    section: &Section,
+    index: usize,
     (target, joint_target): (f64, f64),
     [top, bottom]: [f64; 2],
 ) {
+    let section = &string.sections[index];
     let kind = match section.kind {
         SectionKind::Drillpipe => ElementKind::DrillpipeBody,
         SectionKind::Collar => ElementKind::Collar,
         SectionKind::Stabilizer => ElementKind::Stabilizer,
         SectionKind::Bit => ElementKind::Bit,
     };
-    let body = UniformPart {
-        top,
-        bottom,
-        kind,
-        outer_diameter: section.outer_diameter,
-        inner_diameter: section.inner_diameter,
-        material: string.body_material(section),
-        target,
-    };
+    let body = UniformPart { top, bottom, kind, tube: string.body(section), section: index, target };
     let Some(joint) = &section.tool_joint else {
         stretches.push(body);
         return;
     };
     let joint_stretch = UniformPart {
         kind: ElementKind::ToolJoint,
-        outer_diameter: joint.outer_diameter,
-        inner_diameter: joint.inner_diameter,
-        material: string.joint_material(section, joint),
+        tube: string.joint(section, joint),
         target: joint_target,
         ..body
     };

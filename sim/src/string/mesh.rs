@@ -1,6 +1,6 @@
 //! Elements and nodes.
 
-use drillsweep_scenario::{ContactLaw, Hole, Material, NodeChoice, Scenario, WallLaw};
+use drillsweep_scenario::{ContactLaw, Hole, NodeChoice, Scenario, Tube, WallLaw};
 
 use super::boundaries::{self, ElementKind};
 use super::error::{MAX_ELEMENTS, MeshError};
@@ -17,12 +17,10 @@ pub struct MeshElement {
     pub length: f64,
     /// Part of the string that it belongs to.
     pub kind: ElementKind,
-    /// Outer diameter of the body D_o \[m\].
-    pub outer_diameter: f64,
-    /// Inner diameter of the body D_i \[m\].
-    pub inner_diameter: f64,
-    /// Its material.
-    pub material: Material,
+    /// Its cross-section.
+    pub tube: Tube,
+    /// Index of its section of the scenario's string.
+    pub section: usize,
     /// The hole around it.
     pub hole: Hole,
 }
@@ -30,7 +28,7 @@ pub struct MeshElement {
 impl MeshElement {
     /// Radial clearance of the concentric body \[m\].
     pub fn clearance(&self) -> f64 {
-        0.5 * (self.hole.diameter - self.outer_diameter)
+        0.5 * (self.hole.diameter - self.tube.outer_diameter)
     }
 }
 
@@ -89,7 +87,8 @@ impl StringMesh {
         let string = &scenario.string;
         let stretches = boundaries::stretches(scenario)?;
         let length = stretches.last().map_or(0.0, |stretch| stretch.bottom);
-        let gauges = string.gauges.iter().map(|gauge| gauge.measured_depth);
+        let all_gauges = scenario.gauges();
+        let gauges = all_gauges.iter().map(|gauge| gauge.measured_depth);
         let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
         on_string("gauge", gauges.clone(), length)?;
         on_string("unbalance mass", masses.clone(), length)?;
@@ -104,7 +103,7 @@ impl StringMesh {
         let elements = cut(&boundaries::split(stretches, &places), scenario)?;
 
         let mut mesh = Self { nodes: bare_nodes(&elements, length), elements };
-        for gauge in &string.gauges {
+        for gauge in &all_gauges {
             let index = mesh.nearest_node(gauge.measured_depth);
             let node = &mut mesh.nodes[index];
             node.clearance =
@@ -202,9 +201,8 @@ fn cut(stretches: &[boundaries::UniformPart], scenario: &Scenario) -> Result<Vec
                 top,
                 length: bottom - top,
                 kind: stretch.kind,
-                outer_diameter: stretch.outer_diameter,
-                inner_diameter: stretch.inner_diameter,
-                material: stretch.material,
+                tube: stretch.tube,
+                section: stretch.section,
                 hole: scenario.hole_at(0.5 * (top + bottom)),
             });
         }
@@ -220,7 +218,7 @@ fn bare_nodes(elements: &[MeshElement], length: f64) -> Vec<MeshNode> {
         Some(MeshNode {
             measured_depth: elements.get(i).map_or(length, |below| below.top),
             clearance: narrowest.clearance(),
-            contact_radius: 0.5 * narrowest.outer_diameter,
+            contact_radius: 0.5 * narrowest.tube.outer_diameter,
             stiffness_share: 1.0,
             damping_share: 1.0,
             is_gauge: false,
@@ -233,7 +231,7 @@ fn bare_nodes(elements: &[MeshElement], length: f64) -> Vec<MeshNode> {
 
 #[cfg(test)]
 mod tests {
-    use drillsweep_scenario::{Gauge, HoleSection, Mesh, UnbalanceMass, preset};
+    use drillsweep_scenario::{Gauge, HoleSection, Material, Mesh, UnbalanceMass, preset};
 
     use super::*;
     use crate::string::boundaries::SNAP_FRACTION;
@@ -332,7 +330,7 @@ mod tests {
         let of = |scenario: &Scenario, is: fn(&MeshElement) -> bool| -> Vec<Material> {
             let mesh = StringMesh::new(scenario).unwrap();
             let mut found: Vec<Material> =
-                mesh.elements.iter().filter(|e| is(e)).map(|e| e.material).collect();
+                mesh.elements.iter().filter(|e| is(e)).map(|e| e.tube.material).collect();
             found.dedup();
             found
         };

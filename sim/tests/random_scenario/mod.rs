@@ -54,8 +54,8 @@ pub(crate) fn random_scenario(seed: u64, index: u64) -> Scenario {
     if let Ok(mesh) = StringMesh::new(&scenario) {
         for gauge in &mut scenario.string.gauges {
             let node = mesh.nearest_node(gauge.measured_depth);
-            let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].outer_diameter);
-            let below = mesh.elements.get(node).map_or(0.0, |below| below.outer_diameter);
+            let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].tube.outer_diameter);
+            let below = mesh.elements.get(node).map_or(0.0, |below| below.tube.outer_diameter);
             gauge.clearance = gauge.clearance.min(0.5 * (hole_diameter - above.max(below)));
         }
         let last = mesh.nodes.len() as u32;
@@ -96,7 +96,7 @@ fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
                 material: None,
             });
             let count = if kind == SectionKind::Drillpipe { 1 + draw.below(4) as u32 } else { 1 };
-            Section { kind, count, length, outer_diameter, inner_diameter, tool_joint, material: None }
+            Section { count, tool_joint, ..Section::plain(kind, length, outer_diameter, inner_diameter) }
         })
         .collect();
     let mut string = DrillString { material, sections, gauges: Vec::new(), unbalance: Vec::new() };

@@ -26,19 +26,10 @@ const WINDOW: TimeWindow = TimeWindow { from: 20.0, to: 30.0 };
 /// The paper's string without its tool joints, on a coarse mesh, with damping that closes the model. It begins to stick and slip after some
 /// ten seconds.
 pub fn reduced() -> Scenario {
-    let section = |kind, length, outer_diameter, inner_diameter| Section {
-        kind,
-        count: 1,
-        length,
-        outer_diameter,
-        inner_diameter,
-        tool_joint: None,
-        material: None,
-    };
     let mut scenario = preset("paper-200m").expect("shipped preset");
     scenario.string.sections = vec![
-        section(SectionKind::Drillpipe, 93.5, 0.127, 0.108),
-        section(SectionKind::Collar, 106.5, 0.159, 0.071),
+        Section::plain(SectionKind::Drillpipe, 93.5, 0.127, 0.108),
+        Section::plain(SectionKind::Collar, 106.5, 0.159, 0.071),
     ];
     let lengths = scenario.mesh.lengths_mut().expect("has target lengths");
     (lengths.drillpipe, lengths.collar) = (4.0, 2.2);

@@ -99,16 +99,15 @@ pub(crate) struct LateralWave {
 impl LateralWave {
     /// Wave along a section of a scenario's string.
     pub(crate) fn along(section: &Section, scenario: &Scenario) -> Self {
-        let material = scenario.string.body_material(section);
-        let beam = BeamSection::pipe(section.outer_diameter, section.inner_diameter, &material);
+        let beam = BeamSection::of(&scenario.string.body(section));
         // The narrowest hole has the greatest added mass.
         let hole = scenario.well.narrowest_hole([0.0, f64::INFINITY]);
         let flow_of = |mud: &Mud| FlowMomentum::new(mud, &FlowGeometry::past(&beam, hole));
         let flow = scenario.mud.as_ref().map(flow_of);
-        let mass = material.density * beam.area + flow.map_or(0.0, |flow| flow.lateral_mass());
-        let stiffness = material.youngs_modulus * beam.second_moment;
+        let mass = beam.density * beam.area + flow.map_or(0.0, |flow| flow.lateral_mass());
+        let stiffness = beam.bending_stiffness();
         let frequency = scenario.operation.rotation_speed_rpm.abs() * PI / 30.0;
         let wave_number = (frequency * (mass / stiffness).sqrt()).sqrt();
-        Self { beam, density: material.density, flow, mass, frequency, wave_number }
+        Self { beam, density: beam.density, flow, mass, frequency, wave_number }
     }
 }

@@ -77,11 +77,7 @@ impl Model {
             .enumerate()
             .map(|(i, element)| {
                 StringElement::new(&ElementInput {
-                    section: BeamSection::pipe(
-                        element.outer_diameter,
-                        element.inner_diameter,
-                        &element.material,
-                    ),
+                    section: BeamSection::of(&element.tube),
                     frames: [&frames[i], &frames[i + 1]],
                     curvature: path.curvature(element.top + 0.5 * element.length),
                     hole_diameter: element.hole.diameter,
@@ -120,7 +116,7 @@ impl Model {
                 length,
                 wall: ContactNode {
                     clearance: data.clearance(),
-                    contact_radius: 0.5 * data.outer_diameter,
+                    contact_radius: 0.5 * data.tube.outer_diameter,
                     stiffness_share: length * contact.stiffness_of_a_metre() / contact.stiffness,
                     damping_share: length * contact.damping_of_a_metre() / contact.unit_damping(),
                     friction: Friction::of_hole(&data.hole, contact),

@@ -44,7 +44,7 @@ impl Strength {
     ///
     /// Still mud of one density in and around the pipe adds a hydrostatic stress to that of the effective tension, which does not yield.
     pub(super) fn yield_ratio(&self, tension: f64, torque: f64, curvature: f64) -> Option<f64> {
-        let bending = 0.5 * self.section.outer_diameter * self.section.youngs_modulus * curvature;
+        let bending = self.section.carrying_radius() * self.section.youngs_modulus * curvature;
         let normal = tension.abs() / self.section.area + bending;
         Some(normal.hypot(3_f64.sqrt() * self.shear(torque)) / self.yield_strength?)
     }
@@ -57,6 +57,6 @@ impl Strength {
 
     /// Shear stress at the outer surface \[Pa\].
     fn shear(&self, torque: f64) -> f64 {
-        torque * 0.5 * self.section.outer_diameter / self.section.polar_moment()
+        torque * self.section.carrying_radius() / self.section.polar_moment()
     }
 }

@@ -49,10 +49,10 @@ impl SoftString {
         let joints = |index: usize| {
             let neighbours = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
             let joints = neighbours.filter_map(|index| uniform.get(index));
-            joints.filter(|part| part.kind == ElementKind::ToolJoint).map(|joint| joint.outer_diameter)
+            joints.filter(|part| part.kind == ElementKind::ToolJoint).map(|joint| joint.tube.outer_diameter)
         };
         let part = |(index, part): (usize, &UniformPart)| {
-            let section = BeamSection::pipe(part.outer_diameter, part.inner_diameter, &part.material);
+            let section = BeamSection::of(&part.tube);
             let mass =
                 section.density * section.area + mud * (section.bore_area() - section.displaced_area());
             // A body with joints at both ends hangs between them.
@@ -61,8 +61,8 @@ impl SoftString {
             Part {
                 ends: [part.top, part.bottom],
                 weight: acceleration * mass,
-                contact_radius: 0.5 * part.outer_diameter.max(joint),
-                strength: Strength::new(section, part.material.grade, acceleration * mass),
+                contact_radius: 0.5 * part.tube.outer_diameter.max(joint),
+                strength: Strength::new(section, part.tube.material.grade, acceleration * mass),
             }
         };
         let parts: Vec<Part> = uniform.iter().enumerate().map(part).collect();

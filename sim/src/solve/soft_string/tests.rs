@@ -21,15 +21,12 @@ fn pipe(survey: Vec<SurveyStation>, weight: f64) -> Scenario {
     let (outer_diameter, inner_diameter) = (0.127, 0.108_610_4);
     let area = FRAC_PI_2 / 2.0 * (outer_diameter * outer_diameter - inner_diameter * inner_diameter);
     scenario.string.material.density = weight / 9.81 / area;
-    scenario.string.sections = vec![Section {
-        kind: SectionKind::Drillpipe,
-        count: 1,
-        length: survey.last().unwrap().measured_depth,
+    scenario.string.sections = vec![Section::plain(
+        SectionKind::Drillpipe,
+        survey.last().unwrap().measured_depth,
         outer_diameter,
         inner_diameter,
-        tool_joint: None,
-        material: None,
-    }];
+    )];
     scenario.string.gauges.clear();
     scenario.string.unbalance.clear();
     scenario.mud = None;
@@ -207,7 +204,7 @@ fn a_shortened_string_loses_pipe_at_its_top() {
         length: 100.0,
         inner_diameter: 0.05,
         kind: SectionKind::Collar,
-        ..scenario.string.sections[0]
+        ..scenario.string.sections[0].clone()
     };
     scenario.string.sections.push(collar);
     let string = SoftString::new(&scenario).unwrap();
@@ -254,13 +251,8 @@ fn volve() -> Scenario {
     scenario.string.material =
         Material { youngs_modulus: 2.06e11, density: 7850.0, poissons_ratio: 0.3, grade: None };
     let section = |kind, count, length, outer_diameter, inner_diameter| Section {
-        kind,
         count,
-        length,
-        outer_diameter,
-        inner_diameter,
-        tool_joint: None,
-        material: None,
+        ..Section::plain(kind, length, outer_diameter, inner_diameter)
     };
     use SectionKind::{Bit, Collar, Drillpipe, Stabilizer};
     let joint = drillsweep_scenario::ToolJoint {
@@ -341,7 +333,7 @@ fn volve_f12_with_all_tool_joints_has_the_weight_of_another_code() {
         inner_diameter: 0.08255,
         material: None,
     };
-    let plain = scenario.string.sections[0];
+    let plain = scenario.string.sections[0].clone();
     let jointed = Section { count: 336, length: 9.6, tool_joint: Some(joint), ..plain };
     scenario.string.sections[0].length -= 336.0 * 9.6;
     scenario.string.sections.insert(1, jointed);

@@ -242,15 +242,7 @@ mod tests {
         scenario.well.survey = [0.0, length]
             .map(|measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 })
             .to_vec();
-        scenario.string.sections = vec![Section {
-            kind: SectionKind::Collar,
-            count: 1,
-            length,
-            outer_diameter: 0.159,
-            inner_diameter: 0.071,
-            tool_joint: None,
-            material: None,
-        }];
+        scenario.string.sections = vec![Section::plain(SectionKind::Collar, length, 0.159, 0.071)];
         scenario.string.gauges.clear();
         scenario.string.unbalance.clear();
         scenario.recording.nodes.clear();

@@ -212,15 +212,7 @@ mod tests {
         scenario.well.survey = [0.0, 200.0]
             .map(|measured_depth| SurveyStation { measured_depth, inclination_deg: 90.0, azimuth_deg: 0.0 })
             .to_vec();
-        scenario.string.sections = vec![Section {
-            kind: SectionKind::Drillpipe,
-            count: 1,
-            length: 200.0,
-            outer_diameter: 0.127,
-            inner_diameter: 0.108,
-            tool_joint: None,
-            material: None,
-        }];
+        scenario.string.sections = vec![Section::plain(SectionKind::Drillpipe, 200.0, 0.127, 0.108)];
         scenario.string.gauges.clear();
         scenario.string.unbalance.clear();
         scenario.recording.nodes.clear();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use drillsweep_scenario::Material;
+use drillsweep_scenario::{Material, Tube};
 
 /// A pipe's cross-section with its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,9 @@ pub struct BeamSection {
     pub outer_diameter: f64,
     /// Inner diameter D_i \[m\].
     pub inner_diameter: f64,
-    /// Steel area S \[m2\].
+    /// Outer and inner diameter of the tube that carries loads \[m\].
+    pub carrying: [f64; 2],
+    /// Area of that tube S \[m2\].
     pub area: f64,
     /// Second moment of area I \[m4\].
     pub second_moment: f64,
@@ -21,24 +23,31 @@ pub struct BeamSection {
     pub youngs_modulus: f64,
     /// Shear modulus G = E / 2(1 + nu) \[Pa\].
     pub shear_modulus: f64,
-    /// Density \[kg/m3\].
+    /// Density, of all of the mass in the tube that carries loads \[kg/m3\].
     pub density: f64,
 }
 
 impl BeamSection {
-    /// The section of a pipe (docs/model/beam.md, Section).
+    /// The section of a pipe that carries loads with all of its wall.
     pub fn pipe(outer_diameter: f64, inner_diameter: f64, material: &Material) -> Self {
+        Self::of(&Tube::plain(outer_diameter, inner_diameter, *material))
+    }
+
+    /// The section of a pipe (docs/model/beam.md, Section).
+    pub fn of(tube: &Tube) -> Self {
+        let Tube { outer_diameter, inner_diameter, carrying: [outer, inner], material } = *tube;
         let nu = material.poissons_ratio;
-        let ratio = (inner_diameter / outer_diameter).powi(2);
+        let ratio = (inner / outer).powi(2);
         let plus = (1.0 + ratio).powi(2);
         let shear_coefficient =
             6.0 * (1.0 + nu) * plus / ((7.0 + 6.0 * nu) * plus + (20.0 + 12.0 * nu) * ratio);
-        let area = PI / 4.0 * (outer_diameter.powi(2) - inner_diameter.powi(2));
+        let area = PI / 4.0 * (outer.powi(2) - inner.powi(2));
         Self {
             outer_diameter,
             inner_diameter,
+            carrying: tube.carrying,
             area,
-            second_moment: PI / 64.0 * (outer_diameter.powi(4) - inner_diameter.powi(4)),
+            second_moment: PI / 64.0 * (outer.powi(4) - inner.powi(4)),
             shear_area: shear_coefficient * area,
             youngs_modulus: material.youngs_modulus,
             shear_modulus: material.youngs_modulus / (2.0 * (1.0 + nu)),
@@ -96,9 +105,14 @@ impl BeamSection {
         self.polar_moment() * (self.density * self.shear_modulus).sqrt()
     }
 
-    /// Bending stress at the outer diameter by a moment of 1 N m, D_o / (2 I) \[1/m3\].
+    /// Outer radius of the tube that carries loads \[m\].
+    pub fn carrying_radius(&self) -> f64 {
+        0.5 * self.carrying[0]
+    }
+
+    /// Bending stress at that radius r by a moment of 1 N m, r / I \[1/m3\].
     pub fn outer_bending_stress(&self) -> f64 {
-        0.5 * self.outer_diameter / self.second_moment
+        self.carrying_radius() / self.second_moment
     }
 
     /// Half the difference of hoop and radial stress \[1\] at a radius \[m\] of the wall by a bore pressure of 1 Pa above the annulus' (Lame); zero at
@@ -107,8 +121,7 @@ impl BeamSection {
         if radius == 0.0 {
             return 0.0;
         }
-        let [outer, inner] =
-            [self.outer_diameter, self.inner_diameter].map(|diameter| 0.25 * diameter * diameter);
+        let [outer, inner] = self.carrying.map(|diameter| 0.25 * diameter * diameter);
         outer * inner / ((outer - inner) * radius * radius)
     }
 

@@ -81,7 +81,7 @@ impl OuterStress {
         Self {
             bending: section.outer_bending_stress(),
             axial: 1.0 / section.area,
-            torsion: 0.5 * section.outer_diameter / section.polar_moment(),
+            torsion: section.carrying_radius() / section.polar_moment(),
             yield_strength: grade.map(Grade::yield_strength),
         }
     }
@@ -158,7 +158,7 @@ impl<const D: usize> Elements<D> {
         let elements = model.elements.iter().zip(&model.mesh.elements);
         Self {
             outer_stresses: elements
-                .map(|(element, meshed)| OuterStress::new(element.beam.section(), meshed.material.grade))
+                .map(|(element, meshed)| OuterStress::new(element.beam.section(), meshed.tube.material.grade))
                 .collect(),
             sites: FatigueSite::of(model, equilibrium),
             twist: freedoms.twist(),
@@ -308,10 +308,7 @@ impl<const D: usize> ElementGroup<D> {
             tension: row(&|_, element| (element.tension_row, 0.0)),
             torque: row(&|_, element| (element.torque_row, 0.0)),
             per_area: lanes(&|_, element| 1.0 / element.beam.section().area),
-            fibres: [
-                fibre(|section| 0.5 * section.outer_diameter),
-                fibre(|section| 0.5 * section.inner_diameter),
-            ],
+            fibres: [fibre(|section| 0.5 * section.carrying[0]), fibre(|section| 0.5 * section.carrying[1])],
         }
     }
 

@@ -60,7 +60,7 @@ impl FatigueSite {
         let elements = model.elements.iter().zip(&model.mesh.elements).enumerate();
         elements
             .filter_map(|(e, (element, meshed))| {
-                Some(Self::new(e, element, meshed.material.grade?, equilibrium))
+                Some(Self::new(e, element, meshed.tube.material.grade?, equilibrium))
             })
             .collect()
     }

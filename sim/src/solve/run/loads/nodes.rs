@@ -144,7 +144,7 @@ impl<const D: usize> Nodes<D> {
         let gravity = gravity::acceleration(model.effects.gravity);
         let outer_radius = |node: usize| {
             let adjoining = &elements[node.saturating_sub(1)..(node + 1).min(elements.len())];
-            adjoining.iter().fold(0.0, |radius, element| 0.5 * element.outer_diameter.max(2.0 * radius))
+            adjoining.iter().fold(0.0, |radius, element| 0.5 * element.tube.outer_diameter.max(2.0 * radius))
         };
         let group = |first: usize| {
             let lanes = |value: &dyn Fn(usize) -> f64| {

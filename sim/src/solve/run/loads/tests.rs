@@ -156,7 +156,7 @@ fn a_bit_that_swings_about_its_speed_has_severity_and_sticks_for_its_share() {
     // sin < -(1 - 0.05) / a, to a step at each of the four ends.
     let share = 0.5 - (0.95 / a).asin() / std::f64::consts::PI;
     assert!((bit.stick_fraction.unwrap() - share).abs() < 4.0 / 8192.0);
-    let radius = 0.5 * model.mesh.elements.last().unwrap().outer_diameter;
+    let radius = 0.5 * model.mesh.elements.last().unwrap().tube.outer_diameter;
     assert_near(bit.tangential_acceleration.rms, radius * a * nominal * omega / 2_f64.sqrt(), 1e-12);
     assert_near(bit.tangential_acceleration.peak.value, radius * a * nominal * omega, 1e-12);
 }
@@ -353,7 +353,7 @@ fn accelerations_are_the_derivatives_of_recorded_rates() {
             assert_near(loads.lateral_acceleration.rms, lateral, 5e-3);
             let adjoining =
                 &model.mesh.elements[history.node - 1..(history.node + 1).min(model.elements.len())];
-            let radius = adjoining.iter().map(|e| 0.5 * e.outer_diameter).fold(0.0, f64::max);
+            let radius = adjoining.iter().map(|e| 0.5 * e.tube.outer_diameter).fold(0.0, f64::max);
             let tangential = radius * rms(&mut twist.iter().map(|rate| rate * rate));
             assert_near(loads.tangential_acceleration.rms, tangential, 5e-3);
         }

@@ -25,6 +25,7 @@ mod simulate;
 mod statics;
 mod submit;
 mod sweeps;
+mod tally;
 mod telemetry;
 mod text;
 mod token;
@@ -105,6 +106,8 @@ enum Command {
     Statics(statics::StaticsArguments),
     /// Compute the pressures of the mud's circuit: losses by part, equivalent circulating density and standpipe pressure, by three sets of formulas.
     Hydraulics(hydraulics::HydraulicsArguments),
+    /// Print the components of a string with their weight in air, or the catalogue of pipes.
+    Tally(tally::TallyArguments),
     /// List the scenarios that ship with the program, or print one.
     Scenario {
         /// The scenario to print, as TOML.
@@ -229,6 +232,7 @@ fn run() -> anyhow::Result<()> {
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Statics(arguments) => statics::show(&arguments),
         Command::Hydraulics(arguments) => hydraulics::show(&arguments),
+        Command::Tally(arguments) => tally::tally(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),
         Command::Token(command) => token::token(&command),
         Command::Scenario { name, json } => simulate::print_scenario(name.as_deref(), json),

@@ -132,6 +132,14 @@ fn write_tables(computed: &Computed, directory: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// A node in words, with the name of its component.
+fn node_text(scenario: &Scenario, node: usize, measured_depth: f64) -> String {
+    match scenario.string.component_at(measured_depth) {
+        "" => format!("node {node}"),
+        component => format!("{component}, node {node}"),
+    }
+}
+
 fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<String> {
     let mut text = String::new();
     let statics = &computed.statics;
@@ -199,8 +207,8 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
             });
             writeln!(
                 text,
-                "orbit of node {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm{interval}",
-                orbit.node,
+                "orbit of {} ({:.2} m) over [{}, {}) s: size {:.3} mm rms, radius {:.2} mm +- {:.3} mm, at most {:.2} mm{interval}",
+                node_text(scenario, orbit.node, orbit.measured_depth),
                 orbit.measured_depth,
                 number(orbit.window.from),
                 number(orbit.window.to),
@@ -222,8 +230,8 @@ fn summary_text(scenario: &Scenario, computed: &Computed) -> anyhow::Result<Stri
                 .collect();
             writeln!(
                 text,
-                "lines of node {} over [{}, {}) s (+ forward, - backward whirl): {}",
-                spectrum.node,
+                "lines of {} over [{}, {}) s (+ forward, - backward whirl): {}",
+                node_text(scenario, spectrum.node, spectrum.measured_depth),
                 spectrum.window.from,
                 spectrum.window.to,
                 lines.join(", ")

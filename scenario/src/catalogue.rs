@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 use drillsweep_quantity::{Units, entry, units};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::nearest::did_you_mean;
 use crate::{Grade, SectionKind, ToolJoint};
@@ -16,7 +16,7 @@ const MOST_NAMES: usize = 6;
 const LONGEST: usize = 100;
 
 /// A pipe of the catalogue.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CataloguePipe {
     /// Name, such as `5" 19.5# S-135 NC50`.
     pub name: String,
@@ -32,6 +32,7 @@ pub struct CataloguePipe {
     pub tool_joint: Option<ToolJoint>,
     /// Grade; none of heavy-weight drillpipe, whose tube is weaker than any.
     pub grade: Option<Grade>,
+    #[serde(skip)]
     words: BTreeSet<String>,
 }
 

@@ -167,6 +167,9 @@ pub struct ToolJoint {
 /// Smallest clearance of blades \[m\], that of blades of the hole's diameter: the paper's of stabilizers and bit.
 pub const BLADE_CLEARANCE: f64 = 1e-4;
 
+/// Difference of depths that rounding makes \[m\].
+const SAME_DEPTH: f64 = 1e-6;
+
 /// Pieces of a section that get blades; no mesh has as many.
 const MOST_BLADED_PIECES: u32 = 100_000;
 
@@ -197,6 +200,16 @@ impl Tube {
 }
 
 impl DrillString {
+    /// Name of the component at a measured depth \[m\], of the upper one at a boundary; empty without a name.
+    pub fn component_at(&self, measured_depth: f64) -> &str {
+        let mut bottom = 0.0;
+        let found = self.sections.iter().find(|section| {
+            bottom += section.whole_length();
+            measured_depth <= bottom + SAME_DEPTH
+        });
+        found.map_or("", |section| &section.name)
+    }
+
     /// Material of the bodies of a section, by their diameters.
     pub fn body_material(&self, section: &Section) -> Material {
         let material = section.material.unwrap_or(self.material);
@@ -355,6 +368,18 @@ mod tests {
         assert!((string.mass(&pipe) / (3.0 * 9.6 * 33.6) - 1.0).abs() < 1e-14);
         let steel = |section: &Section| string.joint(section, &joint).material.density;
         assert_eq!(steel(&pipe), 7850.0);
+    }
+
+    #[test]
+    fn a_depth_has_the_component_that_holds_it() {
+        let named = |name: &str| Section { name: name.to_owned(), count: 2, length: 5.0, ..motor() };
+        let mut string = string(named("pipe"));
+        string.sections.push(named("collars"));
+        for (depth, name) in
+            [(0.0, "pipe"), (10.0 + 1e-9, "pipe"), (10.1, "collars"), (20.0, "collars"), (20.1, "")]
+        {
+            assert_eq!(string.component_at(depth), name, "{depth} m");
+        }
     }
 
     #[test]

@@ -28,6 +28,23 @@ export function partsOf(sections) {
 }
 
 /**
+ * Name of the component at a measured depth [m], of the upper one at a boundary; empty without a name.
+ * @param {{name?: string, count?: number, length: number}[]} sections
+ * @param {number} depth
+ */
+export function componentAt(sections, depth) {
+  let bottom = 0;
+  const found = sections.find(({ count = 1, length }) => {
+    bottom += count * length;
+    return depth <= bottom + SAME_DEPTH;
+  });
+  return found?.name ?? "";
+}
+
+/** Difference of depths that rounding makes [m]. */
+const SAME_DEPTH = 1e-6;
+
+/**
  * Kind of the part at each element, between a node and the next one below.
  * @param {Part[]} parts
  * @param {number[]} depths of the nodes, rising [m]

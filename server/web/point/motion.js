@@ -5,6 +5,7 @@ import { valueAtTime } from "../data/at-time.js";
 import { nodeTables, rotationTable, windowTables } from "../data/motion-requests.js";
 import { biasOver, FEWEST, orbitStatistics, recordedAs, STATISTICS } from "../data/statistics.js";
 import { number, say, shown, unit } from "../data/units.js";
+import { componentAt } from "../data/string-parts.js";
 import { Brush, dragWindow } from "../draw/brush.js";
 import {
   holeTrace,
@@ -191,7 +192,15 @@ class NodeMotion {
   /** @param {number} node @returns {string} its depth in words, if it is known */
   #depthOf(node) {
     const index = this.#statics?.columns.node.indexOf(node) ?? -1;
-    return index < 0 ? "" : `, ${say("measured_depth", this.#statics.columns.measured_depth[index])}`;
+    if (index < 0) return "";
+    const depth = this.#statics.columns.measured_depth[index];
+    const component = this.#componentAt(depth);
+    return `, ${say("measured_depth", depth)}${component && `, ${component}`}`;
+  }
+
+  /** @param {number} depth [m] */
+  #componentAt(depth) {
+    return componentAt(this.#context.point.scenario.string.sections, depth);
   }
 
   /** Equilibrium of the node whose tables are shown. */
@@ -199,7 +208,8 @@ class NodeMotion {
     const { columns } = this.#statics;
     const { node, measured_depth } = this.#whole.attributes;
     const index = Math.max(0, columns.node.indexOf(node));
-    const words = `node ${node} at ${say("measured_depth", measured_depth)}`;
+    const component = this.#componentAt(measured_depth);
+    const words = `${component && `${component}, `}node ${node} at ${say("measured_depth", measured_depth)}`;
     return { lowSide: columns.low_side_angle[index], clearance: columns.clearance[index], node, words };
   }
 

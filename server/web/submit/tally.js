@@ -39,11 +39,17 @@ const TABLES = [
     heading: "Tally",
     one: "section",
     columns: [
+      { name: "name", text: "Name", cell: nameBox },
       { name: "kind", text: "Kind", words: ["drillpipe", "collar", "stabilizer", "bit"] },
       { name: "count", text: "Pieces", isOptional: true },
       { name: "length", text: "Length of one" },
       { name: "outer_diameter", text: "Outer diameter" },
       { name: "inner_diameter", text: "Inner diameter" },
+      { name: "mass_per_length", text: "Mass per length", isOptional: true },
+      { name: "stiffness_outer_diameter", text: "Stiffness outer d.", isOptional: true },
+      { name: "stiffness_inner_diameter", text: "Stiffness inner d.", isOptional: true },
+      { name: "blade_diameter", text: "Blade diameter", isOptional: true },
+      { name: "blade_above_end", text: "Blades above end", isOptional: true },
       { name: "tool_joint.length", text: "Joint length", isOptional: true },
       { name: "tool_joint.outer_diameter", text: "Joint outer d.", isOptional: true },
       { name: "tool_joint.inner_diameter", text: "Joint inner d.", isOptional: true },
@@ -62,7 +68,7 @@ const TABLES = [
   },
   {
     path: GAUGES,
-    heading: "Gauges: blades of stabilizers, and the bit",
+    heading: "Gauges: further blades by depth and clearance",
     one: "gauge",
     columns: [
       { name: "measured_depth", text: "Measured depth" },
@@ -130,6 +136,17 @@ export function stringFields(edited) {
   return TABLES.map((table) =>
     table.path === SECTIONS ? tablePart({ ...table, shows }, edited, below) : tablePart(table, edited),
   );
+}
+
+/** @param {string} label @param {string | undefined} value @param {any} _row @param {(value: string) => void} set */
+function nameBox(label, value, _row, set) {
+  const box = h("input", {
+    "aria-label": label,
+    value: value ?? "",
+    maxlength: "100",
+    onchange: () => set(box.value.trim()),
+  });
+  return box;
 }
 
 /** @param {string} label @param {string} inherits @param {Material | undefined} value @param {boolean} isDisabled @param {(value: Material | undefined) => void} set */

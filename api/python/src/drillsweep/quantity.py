@@ -9,7 +9,12 @@ from dataclasses import dataclass
 from dataclasses import field as dataclass_field
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from drillsweep.units import to_pint
+
+if TYPE_CHECKING:
+    import pint
 
 _VARIANT = re.compile(r"^(?:spread|ensemble_mean|confidence|reference|bias)_(.+)$")
 # A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
@@ -50,6 +55,16 @@ class Quantity:
     """Its meaning, in a sentence."""
     words: Mapping[str, str] = dataclass_field(default_factory=dict)
     """Words of a column of texts that has few, with their colours: classes of points, the most severe first."""
+
+    def to_pint(self, value: Any, registry: pint.UnitRegistry[Any] | None = None) -> pint.Quantity[Any]:
+        """A served number, or an array, as a quantity of pint: of the application's registry unless one is given.
+
+        Raises:
+            ValueError: It has no unit, or none that pint has (`Pa s^n`).
+        """
+        if self.unit is None:
+            raise ValueError(f"{self.name} has no unit")
+        return to_pint(value, self.unit, self.unit, registry)
 
 
 def quantity(name: str) -> Quantity | None:

@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from drillsweep.optional import require
+from drillsweep.quantity import quantity
+from drillsweep.units import to_pint
 
 if TYPE_CHECKING:
     import numpy
     import pandas
+    import pint
     import polars
 
 
@@ -94,6 +97,21 @@ class Table(Mapping[str, "numpy.ndarray[Any, Any]"]):
         # Whole and broken numbers may stand in one column of JSON.
         frame: polars.DataFrame = require("polars", "polars").DataFrame(self.columns, strict=False)
         return frame
+
+    def to_pint(self, registry: pint.UnitRegistry[Any] | None = None) -> dict[str, Any]:
+        """The columns by name, as quantities of pint: of the application's registry unless one is given.
+
+        Columns without a unit are arrays; so are those in `Pa s^n`, whose exponent is a value.
+        """
+        columns: dict[str, Any] = {}
+        for name, array in self.items():
+            symbol, known = self.units.get(name), quantity(name)
+            if symbol is None or "s^n" in symbol:
+                columns[name] = array
+            else:
+                kept = known.unit if known is not None else None
+                columns[name] = to_pint(array, symbol, kept or symbol, registry)
+        return columns
 
     def __repr__(self) -> str:
         """Names, units and number of rows; not the values."""

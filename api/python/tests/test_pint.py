@@ -1,4 +1,4 @@
-"""Results as quantities of pint."""
+"""Quantities of pint, as values of requests and as results."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ import numpy as np
 import pint
 import pytest
 
-from drillsweep import Client, Sweep, quantity
+from drillsweep import Axis, Client, InvalidRequest, Range, Sweep, quantity
 from drillsweep.table import Table
-from drillsweep.units import FAMILIES, to_pint
-from service import REPOSITORY
+from drillsweep.units import FAMILIES, from_pint, to_pint
+from service import REPOSITORY, SHORT
+
+Q = pint.UnitRegistry().Quantity
+"""Quantities of another registry than the application's."""
 
 
 def service_units() -> Iterator[tuple[str, str, tuple[str, ...], float]]:
@@ -110,6 +113,77 @@ def test_results_belong_to_the_registry_of_the_application() -> None:
         assert table.to_pint()["flow_rate"].m_as("pump_stroke/s") == pytest.approx([2.0])
     finally:
         application.set(former)
+
+
+def test_quantities_make_the_points_of_the_same_values_in_si(client: Client) -> None:
+    def keys(set: dict[str, Any], **design: Any) -> list[str]:
+        return [point.key for point in client.plan("paper-200m", set=SHORT | set, **design).points]
+
+    gallon, pound = 231 * Fraction("0.0254") ** 3, Fraction("0.45359237")
+    well = client.scenario("paper-200m")["well"]
+    plain: dict[str, Axis] = {
+        "flow_rate": [0.04, float(500 * gallon / 60)],
+        "mud_density": Range(1200, float(12 * pound / gallon), 2),
+    }
+    axes: dict[str, Axis] = {
+        "flow_rate": [Q(40, "liter/second"), Q(500, "gallon/minute")],
+        "mud_density": Range(Q(1.2, "kg/liter"), Q(np.float64(12), "lb/gal"), 2),
+    }
+    in_si = keys({"well": well | {"hole_diameter": 0.2159}, "operation.rotation_speed_rpm": 90}, axes=plain)
+    turning = {"well": well | {"hole_diameter": Q(8.5, "inch")}, "operation.rotation_speed_rpm": Q(1.5, "turn/s")}
+    assert keys(turning, axes=axes) == in_si
+    arrays = {"flow_rate": Q(np.array([40, 50]), "liter/s"), "mud_density": {"values": Q([75], "lb/ft**3")}}
+    points = [{"flow_rate": Q(flow, "m^3/s"), "mud_density": "75 lb/ft3"} for flow in (0.04, 0.05)]
+    assert keys({}, axes=arrays) == keys({}, points=points)
+
+
+def test_units_that_the_service_lacks_are_converted() -> None:
+    assert from_pint(Q(2, "mile"), "m") == (pytest.approx(3218.688), "m")
+    assert from_pint(Q(1, "N*m"), "J") == (1, "J")
+    assert from_pint(Q(10, "lbf/ft**2"), "Pa") == (pytest.approx(478.8026, rel=1e-7), "Pa")
+
+
+def test_queries_and_limits_take_quantities(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    metres = point.orbit(depth=57.73, time=(0.2, 0.4))
+    assert point.orbit(depth=Q(189.40, "foot"), time=(Q(200, "ms"), 0.4)).columns == metres.columns
+    drag = point.torque_drag(depths=Q([100, 200], "meter"), travelling_weight=Q(10, "kN"))
+    assert drag.columns == point.torque_drag(depths=[100, 200], travelling_weight=1e4).columns
+    column = "largest_lateral_acceleration_rms"
+    diagnosis = point.diagnosis({column: Q(1.5, "standard_gravity")})
+    assert diagnosis == point.diagnosis({column: "1.5 g"}) != point.diagnosis({column: None})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            {"axes": {"mud_density": [Q(12, "gal/min")]}},
+            r"^/axes/mud_density/values/0: must have one of the units kg/m3",
+        ),
+        ({"axes": {"mud_density": Q(12, "lb/gal")}}, r"^/axes/mud_density: must be a Range, or a list"),
+        ({"set": {"mud": {"density": Q(12, "")}}}, r"^/set/mud/density: must have one of the units kg/m3"),
+        ({"set": {"mud.consistency": Q(1, "Pa*s**0.7")}}, r"^/set/mud.consistency: must have one of the units Pa s\^n"),
+        # Pint takes a hertz for a radian per second, and a radian for 1.
+        ({"set": {"operation.rotation_speed_rpm": Q(2, "Hz")}}, "must have one of the units rpm"),
+        ({"set": {"recording.rate_hz": Q(120, "rpm")}}, "must have one of the units Hz"),
+        ({"set": {"well.survey": [{"inclination_deg": Q(1, "")}]}}, r"inclination_deg: must have one of the units deg"),
+        ({"points": [{"flow_rate": Q(1, "degC")}]}, r"^/points/0/flow_rate: must have one of the units m3/s"),
+        ({"set": {"mud.densty": Q(1, "candela")}}, r"^/set/mud.densty: must have a unit of the service"),
+    ],
+)
+def test_quantities_of_another_dimension_are_refused(client: Client, arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        client.plan("paper-200m", **arguments)
+
+
+def test_quantities_that_are_not_finite_and_unknown_fields_are_refused(client: Client, sweep: Sweep) -> None:
+    with pytest.raises(ValueError, match=r"^/axes/flow_rate/values/1: must be finite"):
+        client.plan("paper-200m", axes={"flow_rate": Q([1.0, np.nan], "gal/min")})
+    with pytest.raises(TypeError, match=r"^depth: must have one of the units m"):
+        sweep.point(1).orbit(depth=Q(3, "s"))
+    with pytest.raises(InvalidRequest, match="densty"):
+        client.plan("paper-200m", set={"mud.densty": Q(1, "kg/m**3")})
 
 
 def test_pint_is_imported_on_request_only() -> None:

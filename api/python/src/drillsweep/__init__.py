@@ -9,6 +9,7 @@
 
 All quantities are in SI units, which `Table.units` lists. `quantity` describes a column, with its units in pictures and
 in the oil field: `quantity("flow_rate").field.of(0.04)` is 634 gpm.
+With `drillsweep[pint]` values may be quantities of pint, and `Table.to_pint` and `Quantity.to_pint` return them.
 
 The logger `drillsweep` logs submissions, waits and retries at the level INFO.
 """
@@ -16,7 +17,7 @@ The logger `drillsweep` logs submissions, waits and retries at the level INFO.
 from importlib.metadata import version
 
 from drillsweep.client import Client
-from drillsweep.design import Axis, Design, Range, Value
+from drillsweep.design import Axis, Design, Range
 from drillsweep.point import Point, PointError
 from drillsweep.problem import (
     Conflict,
@@ -40,6 +41,7 @@ from drillsweep.quantity import Quantity, Unit, quantity
 from drillsweep.request import Accuracy, Cache, Outputs
 from drillsweep.sweep import Counts, Plan, PlannedPoint, Sweep
 from drillsweep.table import Table
+from drillsweep.values import Value
 
 __version__ = version("drillsweep")
 

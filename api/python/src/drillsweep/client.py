@@ -15,12 +15,13 @@ from urllib.parse import quote
 import httpx
 from httpx_sse import EventSource
 
-from drillsweep.design import Axis, Design, Value, design_to_json
+from drillsweep.design import Axis, Design, design_to_json
 from drillsweep.point import FailureClass, Point
 from drillsweep.problem import PROBLEM_PREFIX, ConnectionError, Problem, UnsupportedServer, problem, warn
 from drillsweep.quantity import Quantity, read_quantities
 from drillsweep.request import Accuracy, Cache, Outputs, request_to_json
 from drillsweep.sweep import Plan, Signs, Sweep
+from drillsweep.values import Value, in_query
 
 DEFAULT_SERVER = "http://127.0.0.1:7340"
 API_VERSION = "1"
@@ -364,8 +365,8 @@ class Client:
         headers: Mapping[str, str] | None = None,
         read_timeout: float | None = None,
     ) -> httpx.Response:
+        parameters = {name: in_query(name, value) for name, value in (query or {}).items() if value is not None}
         self._handshake()
-        parameters = {name: value for name, value in (query or {}).items() if value is not None}
         timeout = httpx.Timeout(self._timeout, read=max(read_timeout or 0.0, self._timeout))
         response = self._answer(method, path, params=parameters, json=body, headers=headers, timeout=timeout)
         if not response.is_success:

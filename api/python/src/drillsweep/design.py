@@ -6,17 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, SupportsFloat, TypedDict
 
-from drillsweep.values import entry, inside, to_json
+from drillsweep.units import is_pint
+from drillsweep.values import Value, entry, inside, to_json
 
 Design = Literal["grid", "zip", "list", "latin_hypercube", "sobol"]
 """Ways of making points from axes."""
 
 Scale = Literal["linear", "log"]
 """Spacing of the values of a range."""
-
-
-Value = SupportsFloat | str
-"""A value of a parameter: a number in the unit of its field, or a text with its unit, such as `"500 gpm"`."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +23,8 @@ class Range:
     Without a count it is the interval from which the designs `latin_hypercube` and `sobol` draw.
     """
 
-    start: float | str
-    stop: float | str
+    start: Value
+    stop: Value
     count: int | None = None
     scale: Scale = "linear"
 
@@ -94,9 +91,11 @@ def _axis_to_json(axis: Axis, pointer: str) -> dict[str, Any]:
         return axis.to_json() | ends
     if isinstance(axis, Mapping):
         return dict(to_json(axis, pointer))
-    if isinstance(axis, str | bytes) or not isinstance(axis, Iterable):
+    if isinstance(axis, str | bytes) or not isinstance(axis, Iterable) or getattr(axis, "ndim", 1) == 0:
         raise TypeError(f"{pointer}: must be a Range, or a list or an array of numbers (got {axis!r})")
     listed = inside(pointer, "values")
+    if is_pint(axis):
+        return {"values": to_json(axis, listed)}
     return {"values": [entry(value, inside(listed, index)) for index, value in enumerate(axis)]}
 
 

@@ -6,12 +6,13 @@ Every function draws into `axes`, or into new ones, and returns them; a history 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from drillsweep.optional import require
 from drillsweep.point import Point, SpectrumWindow, TimeWindow
 from drillsweep.quantity import Unit, quantity
+from drillsweep.values import Limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,7 @@ def orbit(
     point: Point,
     *,
     node: int | None = None,
-    depth: float | None = None,
+    depth: SupportsFloat | None = None,
     nearest: bool = False,
     time: TimeWindow = (None, None),
     axes: Axes | None = None,
@@ -66,7 +67,7 @@ def history(
     point: Point,
     *,
     node: int | None = None,
-    depth: float | None = None,
+    depth: SupportsFloat | None = None,
     nearest: bool = False,
     time: TimeWindow = (None, None),
 ) -> list[Axes]:
@@ -113,11 +114,11 @@ def spectrum(
     point: Point,
     *,
     node: int | None = None,
-    depth: float | None = None,
+    depth: SupportsFloat | None = None,
     nearest: bool = False,
     time: TimeWindow = (None, None),
     window: SpectrumWindow | None = None,
-    range_hz: float | None = None,
+    range_hz: SupportsFloat | None = None,
     peaks: int = 5,
     axes: Axes | None = None,
 ) -> Axes:
@@ -187,7 +188,7 @@ def window(
     x: str | None = None,
     y: str | None = None,
     *,
-    limits: Mapping[str, float | None] | None = None,
+    limits: Limits | None = None,
     axes: Axes | None = None,
 ) -> Axes:
     """The operating window: the class of each point over two parameters, in the colours of the web page.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 from drillsweep.report import Reported
 from drillsweep.table import Table
-from drillsweep.values import limits_text
+from drillsweep.values import Limits, in_query, limits_text
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
@@ -26,7 +26,7 @@ Decimation = Literal["stride", "minmax"]
 SpectrumWindow = Literal["rectangular", "hann"]
 """Weights of the samples before a Fourier transform."""
 
-TimeWindow = tuple[float | None, float | None]
+TimeWindow = tuple[SupportsFloat | None, SupportsFloat | None]
 """Start (included) and end (not included) of a window [s]; None is open."""
 
 
@@ -139,7 +139,7 @@ class Point(Reported):
         self,
         *,
         node: int | None = None,
-        depth: float | None = None,
+        depth: SupportsFloat | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
@@ -165,7 +165,7 @@ class Point(Reported):
         self,
         *,
         node: int | None = None,
-        depth: float | None = None,
+        depth: SupportsFloat | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
         units: str | None = None,
@@ -181,7 +181,7 @@ class Point(Reported):
         self,
         *,
         node: int | None = None,
-        depth: float | None = None,
+        depth: SupportsFloat | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
         max_points: int | None = None,
@@ -203,11 +203,11 @@ class Point(Reported):
         self,
         *,
         node: int | None = None,
-        depth: float | None = None,
+        depth: SupportsFloat | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
         window: SpectrumWindow | None = None,
-        range_hz: float | None = None,
+        range_hz: SupportsFloat | None = None,
         peaks: int | None = None,
         units: str | None = None,
     ) -> Table:
@@ -233,13 +233,13 @@ class Point(Reported):
         self,
         *,
         node: int | None = None,
-        depth: float | None = None,
+        depth: SupportsFloat | None = None,
         nearest: bool = False,
         time: TimeWindow = (None, None),
-        window_s: float | None = None,
-        step_s: float | None = None,
+        window_s: SupportsFloat | None = None,
+        step_s: SupportsFloat | None = None,
         window: SpectrumWindow | None = None,
-        range_hz: float | None = None,
+        range_hz: SupportsFloat | None = None,
         units: str | None = None,
     ) -> Table:
         """The full spectrum of a node's orbit over time: `time`, `frequency` (positive is forward whirl), `amplitude`.
@@ -306,12 +306,12 @@ class Point(Reported):
         """Motion over the whole of a run that ends once it has settled, at 20 Hz at most."""
         return self.view("course", units=units)
 
-    def diagnosis(self, limits: Mapping[str, float | str | None] | None = None) -> dict[str, Any]:
+    def diagnosis(self, limits: Limits | None = None) -> dict[str, Any]:
         """Class of the motion by limits, and causes of the spectral lines.
 
         Args:
             limits: Changes of the service's limits, by column, as numbers in the column's unit or
-                texts with a unit; None removes one.
+                with a unit; None removes one.
         """
         return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
 
@@ -323,7 +323,7 @@ class Point(Reported):
         """Plan of its scenario: every effect with the reason for it, mesh, steps and processor times."""
         return self._client.get_json(f"{self.path}/plan")
 
-    def modes(self, *, to_hz: float | None = None) -> dict[str, Any]:
+    def modes(self, *, to_hz: SupportsFloat | None = None) -> dict[str, Any]:
         """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50)."""
         return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
 
@@ -331,10 +331,10 @@ class Point(Reported):
         self,
         *,
         modes: Sequence[str] | None = None,
-        depths: Sequence[float] | None = None,
+        depths: Iterable[SupportsFloat] | None = None,
         friction: Sequence[float] | None = None,
-        travelling_weight: float | None = None,
-        axial_speed: float | None = None,
+        travelling_weight: SupportsFloat | None = None,
+        axial_speed: SupportsFloat | None = None,
         units: str | None = None,
     ) -> Table:
         """Hook load and surface torque of a soft string over the depth of the bit, with margins: a row a case.
@@ -350,7 +350,8 @@ class Point(Reported):
             axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.
             units: Units of the columns: `"si"`, `"field"`, or `"field,hook_load:kN"`; None means the kept units.
         """
-        lists = {"modes": modes, "depths": depths, "friction": friction}
+        in_metres = None if depths is None else [in_query("depth", depth) for depth in depths]
+        lists = {"modes": modes, "depths": in_metres, "friction": friction}
         query = {name: ",".join(map(str, values)) for name, values in lists.items() if values is not None}
         settings = {"travelling_weight": travelling_weight, "axial_speed": axial_speed, "units": units}
         return self.view("torque_drag", **query, **settings)
@@ -374,5 +375,5 @@ class Point(Reported):
         return f"Point({self.ordinal}, {self.state}{parameters})"
 
 
-def _node_window(node: int | None, depth: float | None, nearest: bool, time: TimeWindow) -> dict[str, Any]:
+def _node_window(node: int | None, depth: SupportsFloat | None, nearest: bool, time: TimeWindow) -> dict[str, Any]:
     return {"node": node, "depth": depth, "nearest": nearest or None, "from": time[0], "to": time[1]}

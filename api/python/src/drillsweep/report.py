@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from drillsweep.values import limits_text
+from drillsweep.values import Limits, limits_text
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
@@ -22,7 +21,7 @@ class Reported:
         """Its path on the server."""
         raise NotImplementedError
 
-    def report(self, limits: Mapping[str, float | None] | None = None, units: Literal["si", "field"] = "si") -> str:
+    def report(self, limits: Limits | None = None, units: Literal["si", "field"] = "si") -> str:
         """Printable report, two to four pages: a self-contained HTML document.
 
         Args:
@@ -34,7 +33,7 @@ class Reported:
     def save_report(
         self,
         file: str | Path,
-        limits: Mapping[str, float | None] | None = None,
+        limits: Limits | None = None,
         units: Literal["si", "field"] = "si",
     ) -> Path:
         """Writes the report to a file that ends in .html."""

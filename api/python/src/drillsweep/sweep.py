@@ -15,13 +15,13 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from drillsweep.design import Axis, Design, Value, axes_to_json, design_to_json
+from drillsweep.design import Axis, Design, axes_to_json, design_to_json
 from drillsweep.point import Point, PointState
 from drillsweep.problem import DrillsweepWarning, FieldProblem, warn
 from drillsweep.progress import ProgressBar, is_interactive
 from drillsweep.report import Reported
 from drillsweep.table import Table
-from drillsweep.values import limits_text, texts, to_json
+from drillsweep.values import Limits, Value, limits_text, texts, to_json
 
 if TYPE_CHECKING:
     from drillsweep.client import Client
@@ -282,7 +282,7 @@ class Sweep(Reported):
 
     def window(
         self,
-        limits: Mapping[str, float | str | None] | None = None,
+        limits: Limits | None = None,
         *,
         units: str | None = None,
         signs: Signs | None = None,
@@ -291,7 +291,7 @@ class Sweep(Reported):
 
         Args:
             limits: Changes of the service's limits, by column, as numbers in the column's unit or
-                texts with a unit; None removes one.
+                with a unit; None removes one.
             units: Units of the columns, as of `table`.
             signs: Signs at the bit, as of `table`.
         """
@@ -426,7 +426,7 @@ class Sweep(Reported):
         over: Sequence[str] = (),
         resolution: float = 0.02,
         difference: float | None = None,
-        limits: Mapping[str, float | str | None] | None = None,
+        limits: Limits | None = None,
         budget: int = 100,
         timeout: float | None = None,
     ) -> Sweep:
@@ -440,7 +440,7 @@ class Sweep(Reported):
             resolution: Longest edge that is not divided, as a part of the range of a parameter.
             difference: For a column: smallest difference that is divided, as a part of the range of all values.
             limits: For classes: changes of the service's limits, by column, as numbers in the column's unit or
-                texts with a unit; None removes one.
+                with a unit; None removes one.
             budget: Largest number of points to add.
             timeout: Longest wait for the points of one round [s]; None is without end.
 

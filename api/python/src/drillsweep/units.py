@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 from drillsweep.optional import require
@@ -48,6 +49,12 @@ FAMILIES: tuple[dict[str, str], ...] = (
 _PER_HUNDRED = ("lbf/100 ft2", "lbf/100ft2")
 
 
+def is_pint(value: Any) -> bool:
+    """True for a quantity of pint, of any registry."""
+    pint = sys.modules.get("pint")
+    return pint is not None and isinstance(value, pint.Quantity)
+
+
 def to_pint(value: Any, symbol: str, kept: str, registry: pint.UnitRegistry[Any] | None = None) -> pint.Quantity[Any]:
     """A number or an array in a unit of the service, of a quantity that is kept in the unit `kept`.
 
@@ -64,5 +71,44 @@ def to_pint(value: Any, symbol: str, kept: str, registry: pint.UnitRegistry[Any]
     return known.Quantity(value, unit)
 
 
-def _family(kept: str) -> dict[str, str]:
+def from_pint(value: pint.Quantity[Any], kept: str | None) -> tuple[Any, str]:
+    """Magnitude and symbol of a quantity of pint, in its own unit if the service has that, else in the unit `kept`.
+
+    Without `kept` the dimension is free. Rates and ratios are not converted: to pint a hertz is a radian per second,
+    and a radian is 1.
+
+    Raises:
+        TypeError: The quantity is of another dimension.
+    """
+    family = _family(kept)
+    units = [*family.items()] if kept is not None else [pair for other in FAMILIES for pair in other.items()]
+    for symbol, unit in units:
+        if _is_in(value, unit):
+            return value.magnitude, symbol
+    is_ambiguous = dict(value.dimensionality) in ({}, {"[time]": -1})
+    if kept in family and not is_ambiguous and value.is_compatible_with(family[kept]):
+        return value.m_as(family[kept]), kept
+    fits = "a unit of the service" if kept is None else f"one of the units {', '.join(family) or kept}"
+    raise TypeError(f"must have {fits} (got {value!r})")
+
+
+def in_kept(value: pint.Quantity[Any], kept: str) -> float:
+    """Number of a quantity of pint in a unit in which the service keeps quantities.
+
+    Raises:
+        TypeError: The quantity is of another dimension.
+    """
+    magnitude, symbol = from_pint(value, kept)
+    return float(magnitude if symbol == kept else value.m_as(_family(kept)[kept]))
+
+
+def _family(kept: str | None) -> dict[str, str]:
     return next((family for family in FAMILIES if kept in family), {})
+
+
+def _is_in(value: pint.Quantity[Any], unit: str) -> bool:
+    # A registry of a caller's own definitions may lack the unit, which is an AttributeError.
+    try:
+        return bool(value.units == type(value.units)(unit))
+    except AttributeError:
+        return False

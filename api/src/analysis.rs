@@ -17,6 +17,7 @@ use serde_json::{Map, Value};
 use crate::judgement::{Judgement, Line, LineCause, Motion, OperatingLimits, line_causes};
 use crate::problem::{ProblemDetails, ProblemKind};
 
+pub use drillsweep_sim::solve::hydraulics::Circuit;
 pub use drillsweep_sim::solve::modes::Modes;
 pub use drillsweep_study::plan::Plan;
 
@@ -46,6 +47,16 @@ pub fn modes_up_to(scenario: &Scenario, to_hz: f64) -> Result<Modes, Box<Problem
     let equilibrium = Equilibrium::find(&model).map_err(|error| none("modes", &error))?;
     let search = ModeSearch { to_hz, ..ModeSearch::default() };
     modes(&model, &equilibrium, &search).map_err(|error| none("modes", &error))
+}
+
+/// Pressures of the circuit of a scenario's mud by all sets of formulas.
+///
+/// # Errors
+/// The scenario has no mud, no model or no equilibrium, or a flow has no solution.
+pub fn hydraulics(scenario: &Scenario) -> Result<Circuit, Box<ProblemDetails>> {
+    let model = Model::new(scenario).map_err(|error| none("hydraulics", &error))?;
+    let equilibrium = Equilibrium::find(&model).map_err(|error| none("hydraulics", &error))?;
+    Circuit::new(&model, &equilibrium).map_err(|error| none("hydraulics", &error))
 }
 
 /// Diagnosis of a finished point: class of its motion by limits, findings with evidence, and causes of its spectral lines.

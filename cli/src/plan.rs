@@ -1,6 +1,7 @@
 //! Plan of a scenario: estimates of its cost, without running it.
 
 use std::fmt::Write as _;
+use std::time::Instant;
 
 use clap::Args;
 use drillsweep_scenario::Problems;
@@ -33,12 +34,20 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     if let Some(problem) = step_problem(&scenario) {
         return Err(Problems::from(problem).into());
     }
+    let start = Instant::now();
     let speed = calibrate()?;
+    let measured = start.elapsed();
     let plan = Plan::new(&scenario, Some(&speed))?.with_equilibrium(&scenario);
+    let planned = start.elapsed() - measured;
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
     } else {
         print(plan_text(&plan)?.trim_end());
+        print(&format!(
+            "this plan: {:.1} s to measure the machine, {:.1} s for the equilibrium and what follows from it",
+            measured.as_secs_f64(),
+            planned.as_secs_f64()
+        ));
     }
     Ok(())
 }

@@ -60,6 +60,18 @@ def test_a_point_has_its_torque_and_drag(sweep: Sweep) -> None:
     assert table["hook_load"][3] > table["hook_load"][1]
 
 
+def test_a_point_has_its_hydraulics(sweep: Sweep) -> None:
+    circuit = sweep.point(1).hydraulics()
+    rest = next(column for column in circuit["columns"] if column["losses"] == "concentric" and not column["rotates"])
+    deepest = circuit["depths"][-1]
+    lost = rest["surface_loss"] + rest["bore_loss"] + rest["tool_loss"] + rest["bit_loss"] + rest["annulus_loss"]
+    assert rest["standpipe_pressure"] == pytest.approx(lost, rel=1e-12)
+    column = circuit["columns"].index(rest)
+    excess = deepest["equivalent_circulating_densities"][column] - circuit["mud_density"]
+    gravity = 9.81
+    assert excess * gravity * deepest["true_vertical_depth"] == pytest.approx(rest["annulus_loss"], rel=1e-9)
+
+
 def test_a_point_has_its_plan_and_its_modes(sweep: Sweep) -> None:
     point = sweep.point(1)
     effects = {effect["effect"]: effect for effect in point.plan()["effects"]}

@@ -1,11 +1,11 @@
-//! Plan and modes of a point, which follow from its scenario alone, and its diagnosis. All search an equilibrium, and take places for expansions, as dry runs
+//! Plan, modes and hydraulics of a point, which follow from its scenario alone, and its diagnosis. All search an equilibrium, and take places for expansions, as dry runs
 //! do.
 
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
-use drillsweep_api::analysis::{self, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::analysis::{self, Circuit, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::judgement::{Judgement, LimitChanges, Line, OperatingLimits};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail};
 use drillsweep_table::tables;
@@ -105,6 +105,35 @@ pub(crate) async fn modes(
     let modes = move |_: &mut Work| Ok(analysis::modes_up_to(&point.scenario, to_hz)?);
     let (modes, _memory): (Modes, _) = place.run(modes).await?;
     Ok(tag.on(Json(modes).into_response()))
+}
+
+/// Pressures of the mud's circuit at a point
+///
+/// Losses by part of the string, standpipe pressure and equivalent circulating density at every node, by the formulas of the eccentric and of the concentric
+/// annulus, each at rest and turning, and by API RP 13D. The lists of parts and depths are in the order of `columns`.
+#[utoipa::path(
+    get,
+    path = "/v1/sweeps/{id}/points/{n}/hydraulics",
+    tag = "points",
+    operation_id = "get_hydraulics",
+    params(PointPath, Conditional),
+    responses((status = 200, description = "The circuit", body = Circuit), (status = 304, description = "The copy is current"), Problems)
+)]
+pub(crate) async fn hydraulics(
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    headers: HeaderMap,
+) -> Result<Response> {
+    let point = point(&app, &id, n).await?;
+    let tag = Tag::of(Format::Json, &("hydraulics", &point.key));
+    if let Some(unchanged) = tag.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    let circuit = move |_: &mut Work| Ok(analysis::hydraulics(&point.scenario)?);
+    let (circuit, _memory): (Circuit, _) = place.run(circuit).await?;
+    Ok(tag.on(Json(circuit).into_response()))
 }
 
 /// Query of a diagnosis.

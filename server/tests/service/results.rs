@@ -292,6 +292,7 @@ async fn a_point_whose_modes_and_plan_are_known_is_not_computed_again() {
         "2/plan",
         "1/torque_drag",
         "1/torque_drag?friction=0.2",
+        "1/hydraulics",
     ] {
         let path = format!("{path}/points/{view}");
         let first = bench.get(&path).await;
@@ -302,7 +303,7 @@ async fn a_point_whose_modes_and_plan_are_known_is_not_computed_again() {
         assert!(unchanged.headers[header::CACHE_CONTROL].to_str().unwrap().contains("no-cache"));
         tags.insert(tag);
     }
-    assert_eq!(tags.len(), 7, "every answer has a tag of its own");
+    assert_eq!(tags.len(), 8, "every answer has a tag of its own");
 }
 
 #[tokio::test]
@@ -494,6 +495,31 @@ async fn torque_and_drag_of_a_point_is_a_table_or_a_broomstick() {
     ] {
         bench.get(&format!("{path}?{wrong}")).await.problem(400, "invalid-parameter");
     }
+}
+
+#[tokio::test]
+async fn the_circuit_of_a_point_adds_up_by_every_set_of_formulas() {
+    let (bench, path) = finished().await;
+    let circuit = bench.get(&format!("{path}/points/1/hydraulics")).await.json();
+    let column = |losses: &str, rotates: bool| {
+        let columns = circuit["columns"].as_array().unwrap().iter();
+        let mut named = columns.filter(|column| column["losses"] == losses && column["rotates"] == rotates);
+        let found = named.next().unwrap_or_else(|| panic!("no column of {losses}: {circuit}"));
+        let of = |name: &str| found[name].as_f64().unwrap();
+        let losses = ["surface_loss", "bore_loss", "tool_loss", "bit_loss", "annulus_loss"];
+        let sum: f64 = losses.map(of).iter().sum();
+        assert!((of("standpipe_pressure") / sum - 1.0).abs() < 1e-12, "{found}");
+        of("annulus_loss")
+    };
+    // A string next to the wall leaves more room on its other side.
+    let [eccentric, concentric] = ["eccentric", "concentric"].map(|losses| column(losses, false));
+    assert!(0.0 < eccentric && eccentric < concentric, "{eccentric} and {concentric} Pa");
+    assert!(column("rp13d", false) > 0.0);
+    let mut dry = json!({"preset": "paper-200m", "set": {"mud": null}, "axes": {"operation.weight_on_bit": {"values": [-1e5]}}});
+    dry["set"]["duration"] = json!(1.0);
+    let dry = format!("/v1/sweeps/{}/points/1/hydraulics", bench.submit(dry).await);
+    let problem = bench.get(&dry).await.problem(409, "no-result");
+    assert!(problem["detail"].as_str().unwrap().contains("mud"), "{problem}");
 }
 
 #[tokio::test]

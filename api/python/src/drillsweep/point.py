@@ -327,6 +327,14 @@ class Point(Reported):
         """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50)."""
         return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
 
+    def hydraulics(self) -> dict[str, Any]:
+        """Pressures of the mud's circuit: losses by part, equivalent circulating density by node, standpipe pressure.
+
+        Lists of parts and depths are in the order of `columns`: eccentric and concentric annulus, each at rest and
+        turning, and API RP 13D. In SI units.
+        """
+        return self._client.get_json(f"{self.path}/hydraulics")
+
     def torque_drag(
         self,
         *,

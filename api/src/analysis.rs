@@ -7,14 +7,14 @@ use drillsweep_quantity::columns::*;
 use drillsweep_quantity::{Place, Quantity};
 use drillsweep_scenario::{NodeChoice, Scenario};
 use drillsweep_sim::solve::model::Model;
-use drillsweep_sim::solve::modes::{ModeSearch, modes};
+use drillsweep_sim::solve::modes::{ModeSearch, modes, modes_in};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::string::MeshNode;
 use drillsweep_study::plan::MachineSpeed;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::judgement::{Judgement, Line, LineCause, Motion, OperatingLimits, line_causes};
+use crate::judgement::{Judgement, Line, LineCause, Motion, OperatingLimits, line_causes, mode_bands};
 use crate::problem::{ProblemDetails, ProblemKind};
 
 pub use drillsweep_sim::solve::hydraulics::Circuit;
@@ -23,9 +23,6 @@ pub use drillsweep_study::plan::Plan;
 
 /// Up to this frequency modes are searched \[Hz\]: there are about two for each hertz and 200 m, and each takes its time.
 pub const HIGHEST_MODE_HZ: f64 = 50.0;
-
-/// Factor on the highest line up to which modes are searched as its cause.
-const MARGIN: f64 = 1.1;
 
 /// Plan of a scenario with warnings from its equilibrium; with processor times if `speed_json` is the speed that a worker has measured.
 ///
@@ -82,23 +79,20 @@ pub fn diagnosis(
     let judgement = Judgement::of_row(row, limits);
     let model = Model::new(scenario).map_err(|error| none("diagnosis", &error))?;
     let lines = lines.unwrap_or_else(|| strongest_lines(&model, row));
-    let highest_hz = lines.iter().fold(0.0, |highest: f64, line| highest.max(line.frequency_hz.abs()));
-    // Causes but modes are found without them.
-    let modes = match highest_hz {
-        0.0 => Vec::new(),
-        _ => Equilibrium::find(&model).map_or_else(
-            |_| Vec::new(),
-            |equilibrium| {
-                let to_hz = (MARGIN * highest_hz).min(HIGHEST_MODE_HZ);
-                let search = ModeSearch { to_hz, ..ModeSearch::default() };
-                modes(&model, &equilibrium, &search).map_or_else(|_| Vec::new(), |found| found.modes)
-            },
-        ),
-    };
     let number = |quantity: &Quantity| row.get(quantity.name).and_then(Value::as_f64);
     let swing = || {
         let relative = number(&BIT_LINE_AMPLITUDE)? / number(&BIT_SPEED_MEAN)?.abs();
         Some([number(&BIT_LINE_FREQUENCY_HZ)?, relative]).filter(|_| relative.is_finite())
+    };
+    let torsion = swing();
+    let bands = mode_bands(&lines, torsion.map(|[frequency_hz, _]| frequency_hz), HIGHEST_MODE_HZ);
+    // Causes but modes are found without them.
+    let modes = match bands.is_empty() {
+        true => Vec::new(),
+        false => Equilibrium::find(&model)
+            .ok()
+            .and_then(|equilibrium| modes_in(&model, &equilibrium, &bands).ok())
+            .unwrap_or_default(),
     };
     let rolling = |node: &MeshNode| {
         let hz = -model.rotation_speed * node.contact_radius / node.clearance / TAU;
@@ -106,7 +100,7 @@ pub fn diagnosis(
     };
     let motion = Motion {
         rotation_hz: model.rotation_speed / TAU,
-        torsion: swing(),
+        torsion,
         rolling_hz: model.mesh.nodes.iter().map(rolling).collect(),
         modes,
     };

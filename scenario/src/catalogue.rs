@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-use drillsweep_quantity::{Units, entry, units};
 use serde::{Deserialize, Serialize};
 
+use crate::format::{from_table, table};
 use crate::nearest::did_you_mean;
 use crate::{Grade, SectionKind, ToolJoint};
 
@@ -16,7 +16,8 @@ const MOST_NAMES: usize = 6;
 const LONGEST: usize = 100;
 
 /// A pipe of the catalogue.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CataloguePipe {
     /// Name, such as `5" 19.5# S-135 NC50`.
     pub name: String,
@@ -38,49 +39,21 @@ pub struct CataloguePipe {
 
 /// The catalogue.
 pub static CATALOGUE: LazyLock<Vec<CataloguePipe>> = LazyLock::new(|| {
-    let mut rows = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_reader(include_bytes!("../catalogue.csv").as_slice());
-    rows.deserialize().map(|row| CataloguePipe::of(row.expect("a row of the catalogue"))).collect()
+    let table = table(include_str!("../catalogue.toml")).expect("the catalogue is TOML");
+    let Document { string: Sections { mut sections } } = from_table(table).expect("a catalogue of pipes");
+    sections.iter_mut().for_each(|pipe| pipe.words = words(&pipe.name));
+    sections
 });
 
-/// A row: lengths in inches, weight in pounds a foot.
+/// The catalogue as a part of a scenario, whose paths decide units.
 #[derive(Deserialize)]
-struct Row {
-    name: String,
-    kind: SectionKind,
-    outer_diameter: String,
-    inner_diameter: String,
-    weight: String,
-    joint_length: String,
-    joint_outer_diameter: String,
-    joint_inner_diameter: String,
-    grade: Option<Grade>,
+struct Document {
+    string: Sections,
 }
 
-impl CataloguePipe {
-    fn of(row: Row) -> Self {
-        let of = |number: &str, unit: &str, units: &Units| {
-            entry::read(&format!("{number} {unit}"), units).expect("a number of the catalogue")
-        };
-        let inches = |number: &str| of(number, "in", &units::WIDTH);
-        let tool_joint = (!row.joint_length.is_empty()).then(|| ToolJoint {
-            length: inches(&row.joint_length),
-            outer_diameter: inches(&row.joint_outer_diameter),
-            inner_diameter: inches(&row.joint_inner_diameter),
-            material: None,
-        });
-        Self {
-            kind: row.kind,
-            outer_diameter: inches(&row.outer_diameter),
-            inner_diameter: inches(&row.inner_diameter),
-            mass_per_length: of(&row.weight, "lb/ft", &units::MASS_PER_LENGTH),
-            tool_joint,
-            grade: row.grade,
-            words: words(&row.name),
-            name: row.name,
-        }
-    }
+#[derive(Deserialize)]
+struct Sections {
+    sections: Vec<CataloguePipe>,
 }
 
 /// The one pipe whose name has all words of a text.

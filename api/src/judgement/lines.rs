@@ -116,6 +116,12 @@ pub enum CauseKind {
 }
 
 impl Line {
+    /// Distance within which another frequency is that of the line \[Hz\]: the resolution of its window, or 1 % of its frequency.
+    fn within(&self) -> f64 {
+        let resolution = BINS / (self.window[1] - self.window[0]).max(f64::MIN_POSITIVE);
+        resolution.max(SAME * self.frequency_hz.abs())
+    }
+
     /// Lines of the table `lines` of a result; absent if it is another table.
     pub fn of_table(table: &Table) -> Option<Vec<Self>> {
         let column = |quantity: &Quantity| table.columns.get(quantity.name)?.numbers();
@@ -139,10 +145,32 @@ pub fn line_causes(lines: &[Line], motion: &Motion) -> Vec<LineCause> {
     lines.iter().map(|line| line_cause(line, motion)).collect()
 }
 
+/// Bands of frequencies \[Hz\], up to a highest one, in which modes can be causes of lines, rising and apart: around each line, and around the torsion.
+pub fn mode_bands(lines: &[Line], torsion_hz: Option<f64>, highest_hz: f64) -> Vec<[f64; 2]> {
+    let widest = lines.iter().map(Line::within).fold(0.0, f64::max);
+    let of_lines = lines.iter().map(|line| (line.frequency_hz.abs(), line.within()));
+    let of_torsion = torsion_hz.filter(|_| !lines.is_empty()).map(|hz| (hz, widest.max(SAME * hz)));
+    let around = |(centre, within): (f64, f64)| {
+        // Whole-number quotients must not lose a mode at the edge.
+        let within = within * (1.0 + 1e-9);
+        [(centre - within).max(0.0), (centre + within).min(highest_hz)]
+    };
+    let mut bands: Vec<[f64; 2]> =
+        of_lines.chain(of_torsion).map(around).filter(|[from, to]| from < to).collect();
+    bands.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut apart: Vec<[f64; 2]> = Vec::new();
+    for band in bands {
+        match apart.last_mut() {
+            Some(last) if band[0] <= last[1] => last[1] = last[1].max(band[1]),
+            _ => apart.push(band),
+        }
+    }
+    apart
+}
+
 fn line_cause(line: &Line, motion: &Motion) -> LineCause {
     let Line { node, measured_depth, window, frequency_hz, amplitude } = *line;
-    let resolution = BINS / (window[1] - window[0]).max(f64::MIN_POSITIVE);
-    let within = resolution.max(SAME * frequency_hz.abs());
+    let within = line.within();
     let torsion = motion.torsion.filter(|[frequency, swing]| *frequency > 0.0 && *swing >= SWINGS);
     let found = of_torsion(line, motion, torsion, within)
         .or_else(|| of_rotation(line, motion, within))
@@ -335,6 +363,24 @@ mod tests {
 
     fn cause(frequency_hz: f64) -> LineCause {
         line_causes(&[line(frequency_hz)], &motion()).remove(0)
+    }
+
+    #[test]
+    fn bands_of_modes_hold_all_that_can_meet_a_line() {
+        // Half a bin of 40 s is 0.0125 Hz, 1 % of 10 Hz 0.1 Hz.
+        let near = |found: Vec<[f64; 2]>, expected: &[[f64; 2]]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+            }
+        };
+        let lines = [line(-10.0), line(0.5), line(10.05), line(0.01), line(60.0)];
+        near(
+            mode_bands(&lines, Some(2.0), 50.0),
+            &[[0.0, 0.0225], [0.4875, 0.5125], [1.4, 2.6], [9.9, 10.1505]],
+        );
+        near(mode_bands(&lines[..1], None, 10.0), &[[9.9, 10.0]]);
+        near(mode_bands(&[], Some(2.0), 50.0), &[]);
     }
 
     #[test]

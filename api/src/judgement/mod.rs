@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 pub use limits::{LimitChanges, LimitError, OperatingLimits};
-pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes};
+pub use lines::{Cause, CauseKind, Line, LineCause, Motion, line_causes, mode_bands};
 
 /// Class of a point, the most severe first.
 #[derive(

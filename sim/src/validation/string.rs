@@ -179,7 +179,7 @@ fn mass(report: &mut Report, path: &str, section: &Section, string: &DrillString
     report.number(
         mass,
         &path,
-        |_| !(found.mass_per_length() <= 0.0),
+        |mass| !(mass > 0.0 && found.mass_per_length() <= 0.0),
         format!("must be more than the tool joints' part of it, {joints:.3} kg/m"),
     );
     report.number(

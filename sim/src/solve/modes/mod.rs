@@ -27,7 +27,7 @@ use std::f64::consts::TAU;
 
 use crate::solve::model::Model;
 use crate::solve::statics::Equilibrium;
-use walk::eigenpairs;
+use walk::{eigenpairs, uncounted_eigenpairs};
 
 /// The modes of a model about its equilibrium.
 ///
@@ -35,6 +35,26 @@ use walk::eigenpairs;
 /// The band is empty or its eigenvalues cannot be found.
 pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> Result<Modes, ModesError> {
     modes_of(&Pencil::about(model, equilibrium), &model.mesh.depths(), search)
+}
+
+/// The modes of a model about its equilibrium in bands of frequencies \[Hz\] that do not overlap. A whole well has some thousand modes up to 20 Hz,
+/// and counting those of a band takes longer than finding them, so that they are not counted.
+///
+/// # Errors
+/// As [`modes`].
+pub fn modes_in(
+    model: &Model,
+    equilibrium: &Equilibrium,
+    bands: &[[f64; 2]],
+) -> Result<Vec<Mode>, ModesError> {
+    let (pencil, depths) = (Pencil::about(model, equilibrium), model.mesh.depths());
+    let mut found = Vec::new();
+    for &[from_hz, to_hz] in bands {
+        let search = ModeSearch { from_hz, to_hz, ..ModeSearch::default() };
+        let pairs = uncounted_eigenpairs(&pencil, &search)?;
+        found.extend(pairs.in_band(&search).map(|pair| Mode::new(&pencil, pair, &depths)));
+    }
+    Ok(found)
 }
 
 /// The modes of a pencil whose nodes are at `depths` \[m\].

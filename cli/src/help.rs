@@ -46,6 +46,7 @@ const GROUPS: [Group; 4] = [
         &[
             ("scenario", "drillsweep scenario paper-200m > string.toml"),
             ("import", "drillsweep import survey survey.xlsx > survey.toml"),
+            ("tally", "drillsweep tally wells/volve-f12 --units field"),
             ("plan", "drillsweep plan paper-200m --set mud.flow_rate=0.02"),
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),

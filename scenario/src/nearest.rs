@@ -3,7 +3,7 @@
 use crate::{PRESETS, Problem};
 
 /// Jaro's similarity from which a name counts as misspelt: a letter too few or two that are swapped, a folder that is left out.
-const SIMILAR: f64 = 0.7;
+const SIMILAR: f64 = 0.72;
 
 /// Bytes of a name from which it resembles none.
 const LONGEST: usize = 256;

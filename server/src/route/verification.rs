@@ -1,17 +1,14 @@
 //! Verification of a sample of a sweep's points.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::judgement::OperatingLimits;
 use drillsweep_api::promise_of_scenario;
-use drillsweep_api::view::operating_window::OperatingWindow;
 use drillsweep_api::view::points::{PointSummary, PointsTable};
 use drillsweep_api::view::verification::{self, Findings, VerifiedPoint};
-use drillsweep_store::{Store, SweepRecord, WorkState};
+use drillsweep_store::{Store, WorkState};
 use tokio::runtime::Handle;
 
 use crate::answer::blocking::blocking;
@@ -20,97 +17,8 @@ use crate::answer::extract::{Path, Query};
 use crate::answer::format::{Answer, Form};
 use crate::answer::records;
 use crate::app::App;
-use crate::app::tables::Tables;
 use crate::openapi::answers::{Conditional, Problems, TableResponse};
 use crate::route::results::TableQuery;
-
-/// Points of a sweep at a version, as they are read for an answer. A table that fits into the cache is read whole and kept; of a larger one only
-/// the needed columns are in memory.
-pub(crate) struct SweepPoints {
-    store: Store,
-    tables: Arc<Tables>,
-    runtime: Handle,
-    id: String,
-    version: i64,
-    total: u64,
-    verified: Arc<Verified>,
-    /// Memory of an answer from all columns \[bytes\].
-    pub(crate) memory: u64,
-}
-
-/// Class of each point; absent without a result.
-pub(crate) type Classes = Vec<Option<String>>;
-
-impl SweepPoints {
-    /// Points of a sweep, none of which is read.
-    pub(crate) async fn of(app: &App, sweep: &SweepRecord) -> Result<(Self, Arc<Verified>)> {
-        let total = sweep.counts.total.unsigned_abs();
-        let verified = Arc::new(Verified::load(&app.store, &sweep.id).await?);
-        let points = Self {
-            store: app.store.clone(),
-            tables: app.tables.clone(),
-            runtime: Handle::current(),
-            id: sweep.id.clone(),
-            version: sweep.version,
-            total,
-            verified: verified.clone(),
-            memory: memory_of_points(app, &sweep.id, total).await?,
-        };
-        Ok((points, verified))
-    }
-
-    /// Table with all columns. Blocks.
-    pub(crate) fn whole(&self) -> Result<Arc<PointsTable>> {
-        let read = || self.verified.points(&self.store, &self.id, self.total, &self.runtime);
-        match Tables::fits(self.memory) {
-            true => self.tables.get_or_read(&self.id, self.version, read),
-            false => Ok(Arc::new(read()?)),
-        }
-    }
-
-    /// Table with some fields of summaries, and classes by limits if there are any. Blocks.
-    pub(crate) fn selected(
-        &self,
-        kept: &[String],
-        limits: Option<&OperatingLimits>,
-    ) -> Result<(PointsTable, Classes)> {
-        let classes_of =
-            |points: &PointsTable| limits.map_or(Classes::new(), |limits| points.classes(limits));
-        if Tables::fits(self.memory) {
-            let points = self.whole()?;
-            return Ok((points.keeping(kept), classes_of(&points)));
-        }
-        let mut selected = PointsTable::of_fields(kept, usize::try_from(self.total).unwrap_or_default());
-        let (mut classes, mut page) = (Classes::new(), PointsTable::default());
-        let mut take = |page: &mut PointsTable| {
-            classes.extend(classes_of(page));
-            selected.append(std::mem::take(page));
-        };
-        self.each(|point| {
-            page.push(point)?;
-            if page.len() == PAGE as usize {
-                take(&mut page);
-            }
-            Ok(())
-        })?;
-        take(&mut page);
-        Ok((selected, classes))
-    }
-
-    /// Operating window by limits. Blocks.
-    pub(crate) fn window(&self, limits: OperatingLimits) -> Result<OperatingWindow> {
-        if Tables::fits(self.memory) {
-            return Ok(OperatingWindow::of_table(&*self.whole()?, limits));
-        }
-        let mut window = OperatingWindow::new(limits);
-        self.each(|point| window.push(&point))?;
-        Ok(window)
-    }
-
-    fn each(&self, visit: impl FnMut(PointSummary) -> serde_json::Result<()>) -> Result<()> {
-        self.verified.each_point(&self.store, &self.id, &self.runtime, visit)
-    }
-}
 
 /// Memory of a point in the table of its sweep, without its summary \[bytes\].
 const MEMORY_OF_POINT: u64 = 256;
@@ -127,7 +35,7 @@ pub(crate) async fn memory_of_points(app: &App, id: &str, points: u64) -> Result
 }
 
 /// Number of points of a sweep's table that are read at once.
-const PAGE: i64 = 500;
+pub(crate) const PAGE: i64 = 500;
 
 /// Verified points of a sweep, and findings.
 #[derive(Default)]

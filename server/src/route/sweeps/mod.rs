@@ -4,6 +4,7 @@ pub(crate) mod append;
 pub(crate) mod change;
 mod expand;
 pub(crate) mod list;
+mod points;
 pub(crate) mod request;
 pub(crate) mod show;
 pub(crate) mod submit;

@@ -24,7 +24,7 @@ use crate::answer::stored::Stored;
 use crate::answer::{recordings, records};
 use crate::app::App;
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
-use crate::route::verification::SweepPoints;
+use crate::route::sweeps::points::TablePoints;
 
 /// Query of the table of a sweep.
 #[derive(Deserialize, utoipa::IntoParams)]
@@ -114,7 +114,7 @@ pub(crate) async fn table(
     let key =
         Tag::of(&form, &("map", &id, sweep.version, &sweep.name, &fields, &limits, signs, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
-    let (points, verified) = SweepPoints::of(&app, &sweep).await?;
+    let (points, verified) = TablePoints::of(&app, &sweep).await?;
     let nodes = match format.is_picture() {
         true => nodes_of(fields.as_deref().unwrap_or_default()),
         false => Vec::new(),
@@ -195,7 +195,7 @@ pub(crate) async fn columns(State(app): State<App>, Path(id): Path<String>) -> R
     if let Some(columns) = app.columns.get(&id, sweep.version) {
         return Ok(Json(columns));
     }
-    let (points, _) = SweepPoints::of(&app, &sweep).await?;
+    let (points, _) = TablePoints::of(&app, &sweep).await?;
     let place = app.view(points.memory).await?;
     place
         .run(move || {

@@ -17,7 +17,7 @@ use crate::answer::format::{Answer, Form, PictureFormat};
 use crate::answer::records;
 use crate::app::App;
 use crate::openapi::answers::{Conditional, PictureResponse, Problems};
-use crate::route::verification::SweepPoints;
+use crate::route::sweeps::points::TablePoints;
 
 /// Query of an operating window.
 #[derive(Deserialize, utoipa::IntoParams)]
@@ -72,7 +72,7 @@ pub(crate) async fn window(
     let limits = app.config.operating_limits.with(&limits);
     let slice = slice.unwrap_or_default();
     let key = Tag::of(&form, &("window", &id, sweep.version, &sweep.name, &limits, signs, &slice));
-    let (points, verified) = SweepPoints::of(&app, &sweep).await?;
+    let (points, verified) = TablePoints::of(&app, &sweep).await?;
     app.answer(format, key.as_str(), points.memory, move || {
         let window = points.window(limits)?;
         let parameters = window.parameters().map(str::to_owned).collect();

@@ -7,9 +7,9 @@ use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::analysis::{self, Circuit, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
 use drillsweep_api::judgement::{Judgement, LimitChanges, Line, OperatingLimits};
-use drillsweep_api::{PHYSICS_VERSION, PointDetail};
+use drillsweep_api::{PHYSICS_VERSION, PointDetail, ProblemDetails};
 use drillsweep_table::tables;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
@@ -47,13 +47,23 @@ pub(crate) async fn plan(
     let point = point(&app, &id, n).await?;
     let speed = app.store.machine_speed(i64::from(PHYSICS_VERSION)).await?;
     let tag = Tag::of(Format::Json, &("plan", &point.key, &speed));
-    if let Some(unchanged) = tag.unchanged(&headers) {
+    computed(&app, &caller, &headers, tag, move || analysis::plan(&point.scenario, speed.as_deref())).await
+}
+
+/// Answer with a document that an equilibrium gives, in a place for expansions, unless the caller's copy is current.
+async fn computed<T: Serialize + Send + 'static>(
+    app: &App,
+    caller: &Caller,
+    headers: &HeaderMap,
+    tag: Tag,
+    compute: impl FnOnce() -> std::result::Result<T, Box<ProblemDetails>> + Send + 'static,
+) -> Result<Response> {
+    if let Some(unchanged) = tag.unchanged(headers) {
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let plan = move |_: &mut Work| Ok(analysis::plan(&point.scenario, speed.as_deref())?);
-    let (plan, _memory): (Plan, _) = place.run(plan).await?;
-    Ok(tag.on(Json(plan).into_response()))
+    let (document, _memory): (T, _) = place.run(move |_: &mut Work| Ok(compute()?)).await?;
+    Ok(tag.on(Json(document).into_response()))
 }
 
 /// Query of the modes.
@@ -98,13 +108,7 @@ pub(crate) async fn modes(
 ) -> Result<Response> {
     let point = point(&app, &id, n).await?;
     let tag = Tag::of(Format::Json, &("modes", &point.key, to_hz));
-    if let Some(unchanged) = tag.unchanged(&headers) {
-        return Ok(unchanged);
-    }
-    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let modes = move |_: &mut Work| Ok(analysis::modes_up_to(&point.scenario, to_hz)?);
-    let (modes, _memory): (Modes, _) = place.run(modes).await?;
-    Ok(tag.on(Json(modes).into_response()))
+    computed(&app, &caller, &headers, tag, move || analysis::modes_up_to(&point.scenario, to_hz)).await
 }
 
 /// Pressures of the mud's circuit at a point
@@ -127,13 +131,7 @@ pub(crate) async fn hydraulics(
 ) -> Result<Response> {
     let point = point(&app, &id, n).await?;
     let tag = Tag::of(Format::Json, &("hydraulics", &point.key));
-    if let Some(unchanged) = tag.unchanged(&headers) {
-        return Ok(unchanged);
-    }
-    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let circuit = move |_: &mut Work| Ok(analysis::hydraulics(&point.scenario)?);
-    let (circuit, _memory): (Circuit, _) = place.run(circuit).await?;
-    Ok(tag.on(Json(circuit).into_response()))
+    computed(&app, &caller, &headers, tag, move || analysis::hydraulics(&point.scenario)).await
 }
 
 /// Query of a diagnosis.

@@ -165,7 +165,7 @@ fn impossible_components_are_refused_at_their_field() {
     };
     assert_eq!(refused(&|_| ()), [""; 0]);
     assert_eq!(refused(&|s| s.mass_per_length = Some(0.0)), ["mass_per_length"]);
-    assert_eq!(refused(&|s| s.mass_per_length = Some(900.0)), ["mass_per_length"], "denser than any solid");
+    assert_eq!(refused(&|s| s.mass_per_length = Some(1000.0)), ["mass_per_length"], "denser than any solid");
     assert_eq!(refused(&|s| s.stiffness_inner_diameter = Some(0.25)), ["stiffness_inner_diameter"]);
     assert_eq!(refused(&|s| s.stiffness_outer_diameter = Some(-0.1)), ["stiffness_outer_diameter"]);
     assert_eq!(refused(&|s| s.blade_diameter = Some(0.32)), ["blade_diameter"]);

@@ -48,7 +48,7 @@ pub(super) fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -
 
 fn is_far(scenario: &Scenario, [top, bottom]: [f64; 2]) -> bool {
     let sections = scenario.string.sections.iter();
-    let bit: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
+    let bit: f64 = sections.map(Section::whole_length).sum();
     // A node that is chosen by its number says nothing of a depth.
     let recorded = scenario.recording.nodes.iter().filter_map(|choice| match choice {
         NodeChoice::Depth(depth) => Some(*depth),

@@ -1,5 +1,6 @@
 //! Rules of the string and its mesh.
 
+use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{
@@ -79,9 +80,8 @@ fn section(report: &mut Report, scenario: &Scenario, index: usize) {
     let path = format!("string.sections[{index}]");
     report.require(section.count > 0, format!("{path}.count"), section.count, "must be 1 or more");
     report.positive(section.length, format!("{path}.length"));
-    let length = |section: &Section| f64::from(section.count) * section.length;
-    let top: f64 = scenario.string.sections[..index].iter().map(length).sum();
-    let hole = scenario.well.narrowest_hole([top, top + length(section)]);
+    let top: f64 = scenario.string.sections[..index].iter().map(Section::whole_length).sum();
+    let hole = scenario.well.narrowest_hole([top, top + section.whole_length()]);
     pipe(report, &path, section.outer_diameter, section.inner_diameter, hole);
 
     if let Some(own) = &section.material {
@@ -182,11 +182,13 @@ fn mass(report: &mut Report, path: &str, section: &Section, string: &DrillString
         |mass| !(mass > 0.0 && found.mass_per_length() <= 0.0),
         format!("must be more than the tool joints' part of it, {joints:.3} kg/m"),
     );
+    // Of a body that is filled: what is inside need not carry loads.
+    let most = DENSEST_SOLID * FRAC_PI_4 * section.outer_diameter.powi(2);
     report.number(
         mass,
         &path,
-        |_| found.material.density.is_nan() || found.material.density <= DENSEST_SOLID,
-        format!("is a density of {:.0} kg/m3, more than any solid has", found.material.density),
+        |_| most.is_nan() || found.mass_per_length().is_nan() || found.mass_per_length() <= most,
+        format!("the body must weigh at most {most:.0} kg/m, as the densest solid of its outer diameter"),
     );
     let ratio = found.mass_per_length() / expected.mass_per_length();
     report.warn(
@@ -258,7 +260,7 @@ fn length(report: &mut Report, scenario: &Scenario) {
         "an empty list",
         "must have at least one section",
     );
-    let length: f64 = sections.iter().map(|section| f64::from(section.count) * section.length).sum();
+    let length: f64 = sections.iter().map(Section::whole_length).sum();
     if let Some(bottom) = scenario.well.survey.last().map(|station| station.measured_depth)
         && bottom.is_finite()
         && scenario.well.survey.len() >= 2

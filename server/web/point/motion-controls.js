@@ -1,6 +1,7 @@
 // Controls of the motion of a node.
 
 import { nodeInLink, rangesOf } from "../data/motion-requests.js";
+import { componentAt } from "../data/string-parts.js";
 import { say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
 
@@ -54,8 +55,11 @@ export class MotionControls {
     const entry = (/** @type {string} */ name, /** @type {HTMLInputElement} */ box) =>
       h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => this.#set(name, value);
+    const { sections } = point.scenario.string;
+    const atDepth = (/** @type {number} */ depth) =>
+      [say("measured_depth", depth), componentAt(sections, depth)].filter(Boolean).join(", ");
     const nodeName = (/** @type {any} */ node) =>
-      node.node !== undefined ? `${node.node}${depthOf(node.node)}` : say("measured_depth", node.depth);
+      node.node !== undefined ? `${node.node}${depthOf(node.node)}` : atDepth(node.depth);
     fill(
       this.element,
       choice(

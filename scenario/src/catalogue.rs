@@ -31,8 +31,8 @@ pub struct CataloguePipe {
     pub mass_per_length: f64,
     /// Tool joints; none of a collar.
     pub tool_joint: Option<ToolJoint>,
-    /// Grade; none of heavy-weight drillpipe, whose tube is weaker than any.
-    pub grade: Option<Grade>,
+    /// Grade.
+    pub grade: Grade,
     #[serde(skip)]
     words: BTreeSet<String>,
 }
@@ -146,7 +146,7 @@ mod tests {
     fn names_are_found_as_drillers_write_them() {
         let whole = pipe("5\" 19.5# S-135 NC50").unwrap();
         assert_eq!((whole.outer_diameter, whole.inner_diameter), (0.127, 0.108_610_4));
-        assert_eq!(whole.grade, Some(Grade::S135));
+        assert_eq!(whole.grade, Grade::S135);
         for same in ["5 in 19.50 lb/ft S135 NC50", "NC50 s-135 19.5# 5\"", "5\u{201d} 19.5# DP S-135 nc50"] {
             assert_eq!(pipe(same).unwrap().name, whole.name, "{same}");
         }

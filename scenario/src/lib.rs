@@ -172,7 +172,7 @@ pub struct Material {
     pub grade: Option<Grade>,
 }
 
-/// Grade of steel, with its least yield and tensile strength: drillpipe of API Spec 5DP, collars of API Spec 7-1.
+/// Grade of steel, with its least yield and tensile strength: drillpipe of API Spec 5DP, collars of API Spec 7-1, heavy-weight drillpipe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 pub enum Grade {
     /// Drillpipe, 75 and 100 ksi.
@@ -187,6 +187,9 @@ pub enum Grade {
     /// Drillpipe, 135 and 145 ksi.
     #[serde(rename = "S-135")]
     S135,
+    /// Tubes of heavy-weight drillpipe, 55 and 95 ksi.
+    #[serde(rename = "HWDP-55")]
+    Hwdp55,
     /// Collars below 7 inches and tool joints of at least as strong steel, 110 and 140 ksi.
     #[serde(rename = "collar-110")]
     Collar110,
@@ -212,6 +215,7 @@ impl Grade {
             Self::X95 => [95.0, 105.0],
             Self::G105 => [105.0, 115.0],
             Self::S135 => [135.0, 145.0],
+            Self::Hwdp55 => [55.0, 95.0],
             Self::Collar110 => [110.0, 140.0],
             Self::Collar100 => [100.0, 135.0],
         }

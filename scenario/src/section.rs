@@ -4,8 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use serde::{Deserialize, Serialize};
 
-use crate::catalogue;
-use crate::{DrillString, Gauge, Grade, Material, Scenario};
+use crate::{DrillString, Gauge, Grade, Material, Scenario, catalogue};
 
 /// `count` equal pieces of pipe, one after the other, or one component of the bottom-hole assembly; lengths and diameters in metres. The fields are those of
 /// [`WrittenSection`] after the catalogue's have been filled in.
@@ -65,7 +64,7 @@ impl TryFrom<WrittenSection> for Section {
             blade_above_end: written.blade_above_end,
             tool_joint: written.tool_joint.or(pipe.and_then(|pipe| pipe.tool_joint)),
             material: written.material,
-            grade: written.grade.or(pipe.and_then(|pipe| pipe.grade)),
+            grade: written.grade.or(pipe.map(|pipe| pipe.grade)),
         })
     }
 }
@@ -82,7 +81,7 @@ pub struct WrittenSection {
     /// catalogue's. Results and stored scenarios have these fields in its place.
     #[serde(default)]
     pipe: Option<String>,
-    /// Kind of the section; it decides which target element length holds, and nothing else. Required without `pipe`.
+    /// Kind of the section; it decides which target element length holds, and where the blades are. Required without `pipe`.
     #[serde(default)]
     kind: Option<SectionKind>,
     /// Number of equal pieces, each of `length`; 1 unless given.
@@ -101,7 +100,7 @@ pub struct WrittenSection {
     #[serde(default)]
     inner_diameter: Option<f64>,
     /// Mean mass of a metre of a piece in air \[kg/m\], tool joints and everything inside included, as a tally or a catalogue has it; absent
-    /// means that of the diameters and the density. Diameters alone make a motor 40 % too light. Tool joints keep the mass of their
+    /// means that of the diameters and the density. Diameters alone make the motor of a published tally 37 % too light. Tool joints keep the mass of their
     /// diameters, the body has the rest.
     #[serde(default)]
     mass_per_length: Option<f64>,

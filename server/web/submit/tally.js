@@ -22,7 +22,7 @@ const MATERIALS = [
   ["non-magnetic steel", { youngs_modulus: 2e11, density: 7920, poissons_ratio: 0.27 }],
   ["titanium Ti-6Al-4V", { youngs_modulus: 1.1e11, density: 4430, poissons_ratio: 0.31 }],
 ];
-const GRADES = ["E-75", "X-95", "G-105", "S-135", "collar-110", "collar-100"];
+const GRADES = ["E-75", "X-95", "G-105", "S-135", "HWDP-55", "collar-110", "collar-100"];
 
 /** @typedef {{youngs_modulus: number, density: number, poissons_ratio: number, grade?: string}} Material */
 

@@ -120,6 +120,7 @@ pub(super) static ALL: &[Quantity] = &[
     field("operation.rotation_speed_rpm", "Omega", Some(&units::SPEED_OF_ROTATION), "rotation speed"),
     field("operation.weight_on_bit", "", Some(&units::FORCE), "weight on bit"),
     field("operation.torque_on_bit", "", Some(&units::TORQUE), "torque on bit"),
+    field("operation.axial_speed", "V", Some(&units::SPEED), "axial speed of the string"),
     field("operation.length_above", "L", Some(&units::DEPTH), "length of pipe above"),
     // Contact with the wall.
     field("contact.stiffness", "k_c", Some(&units::STIFFNESS), "wall stiffness"),

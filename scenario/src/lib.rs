@@ -341,6 +341,11 @@ pub struct Operation {
     /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; it is constant, so that
     /// stick-slip comes from the wall alone.
     pub torque_on_bit: f64,
+    /// Axial speed of the whole string \[m/s\], downhole positive, negative pulls out; 0 unless given, at most 10 either way, usual 0.1 to 1 of a
+    /// trip and 0.003 of drilling without rotation. Friction at rest then acts against the velocity of the surface, about the axis and along it: the
+    /// tension is that of picking up, slacking off, sliding or reaming. Only the equilibrium has it: `effects.transient` must be `off`.
+    #[serde(default)]
+    pub axial_speed: f64,
     /// Boundary condition of the top node; absent means `clamped`. `pinned` affects bending near the top, and hardly the rest of the string.
     /// `clamped` and `pinned` reflect torsional and axial waves at the top: right at a top drive that holds its speed, not for a part of a
     /// string, which takes `continues`.

@@ -130,7 +130,7 @@ numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pre
     without regime, rotation_factor, viscosity_eccentricity);
 numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
     without losses, surface_case);
-numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit, length_above; without top);
+numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit, axial_speed, length_above; without top);
 numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
     static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);

@@ -307,7 +307,7 @@ fn unbalanced(model: &Model, rest: &Equilibrium) -> f64 {
     }
     for (e, segment) in model.wall.segments().iter().enumerate() {
         let values = element_values(&rest.displacement, e);
-        if let Some(contact) = static_segment(model.wall.law(), segment, &values, model.rotation_speed) {
+        if let Some(contact) = static_segment(model.wall.law(), segment, &values, model.body_motion()) {
             largest = largest.max(contact.force.amax());
             for (i, force) in contact.force.iter().enumerate() {
                 forces[e + i / 6][i % 6] += force;

@@ -4,7 +4,9 @@ use drillsweep_scenario::{ElementLengths, Mesh, PressureLosses, Scenario, preset
 use drillsweep_sim::math::dof::{U, V};
 use drillsweep_sim::solve::hydraulics::{Circuit, Conduit};
 use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::soft_string::{DragCase, DragMode, DragSettings, SoftString};
 use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::solve::stiff_string::stiff_row;
 
 fn well() -> Scenario {
     preset("wells/volve-f12").expect("it ships with the program")
@@ -146,4 +148,27 @@ fn pressures_of_a_whole_well_are_those_of_the_formulas_by_another_program() {
     let annulus = [eccentric, concentric, rp13d].map(|column| of(column).annulus_loss);
     assert!((annulus[2] / annulus[1] - 1.0).abs() < 0.15, "{annulus:?}");
     assert!((0.5..0.75).contains(&(annulus[0] / annulus[1])), "{annulus:?}");
+}
+
+#[test]
+fn a_whole_string_moves_at_the_hook_loads_of_a_soft_string() {
+    let mut scenario = well();
+    scenario.mud.as_mut().expect("mud").flow_rate = 0.0;
+    let soft = SoftString::new(&scenario).expect("valid");
+    let settings = DragSettings { axial_speed: Some(-0.3), ..DragSettings::default() };
+    let (mu, bit_depth) = (0.25, soft.length());
+    // Friction about the axis moves a string up the wall, whose side force falls by this; a soft string stays on the low side.
+    let climb = 1.0 / f64::hypot(mu, 1.0);
+    for mode in DragMode::ALL {
+        let case = DragCase { mode, bit_depth, friction: Some(mu) };
+        let expected = soft.forces(&case, &settings).expect("valid");
+        let found = stiff_row(&scenario, &case, &settings).expect("rests");
+        // A stiff string crosses doglegs within its clearance, where a soft one presses on the wall.
+        let ratio = found.hook_load / expected.hook_load;
+        assert!((ratio - 1.0).abs() < 0.02, "{}: {ratio} of the hook load", mode.name());
+        if matches!(mode, DragMode::Rotate | DragMode::Drill) {
+            let ratio = found.surface_torque / (expected.surface_torque * climb);
+            assert!((0.96..1.03).contains(&ratio), "{}: {ratio} of the torque", mode.name());
+        }
+    }
 }

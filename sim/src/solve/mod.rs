@@ -1,4 +1,4 @@
-//! Model of a scenario, its equilibrium, its modes, and its motion in time; torque and drag of a string without bending stiffness; pressures of the mud's circuit.
+//! Model of a scenario, its equilibrium, its modes, and its motion in time; torque and drag of a string without and with bending stiffness; pressures of the mud's circuit.
 
 pub mod hydraulics;
 pub mod model;
@@ -8,3 +8,4 @@ pub mod run;
 pub mod soft_string;
 pub mod statics;
 pub mod step;
+pub mod stiff_string;

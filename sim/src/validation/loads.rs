@@ -7,6 +7,7 @@ use drillsweep_scenario::{
 };
 
 use super::report::Report;
+use crate::force::effect::active_effects;
 use crate::force::mud::SURFACE_CASES;
 
 /// Densities of muds \[kg/m3\] from oil to the heaviest weighted ones, 21.7 lb/gal.
@@ -48,6 +49,9 @@ const USUAL_ROTATION: RangeInclusive<f64> = -400.0..=400.0;
 /// Largest speed of rotation \[rpm\]: with it the surface of a pipe of 0.2 m moves at 100 m/s.
 const FASTEST_ROTATION: f64 = 10_000.0;
 
+/// Largest axial speed of a string \[m/s\]; trips take 0.5 to 2.
+const FASTEST_TRIP: f64 = 10.0;
+
 /// Longest pipe above a string \[m\]; the longest wells have 15 km.
 const LONGEST_STRING_ABOVE: f64 = 2e4;
 
@@ -80,6 +84,21 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
         "without `operation.length_above` no drive returns the top to its speed: friction that falls from `break_away` to that of sliding leaves \
          the string turning faster; start from `sliding`",
     );
+    let speed = scenario.operation.axial_speed;
+    if speed.is_finite() && speed != 0.0 {
+        report.require(
+            !active_effects(scenario).transient,
+            "operation.axial_speed",
+            speed,
+            "acts on the equilibrium alone, not on a run in time: with it `effects.transient` must be `off`",
+        );
+        report.require(
+            !scenario.recording.stability,
+            "operation.axial_speed",
+            speed,
+            "acts on the equilibrium alone: with it `recording.stability` must be false",
+        );
+    }
     check_contact(report, &scenario.contact);
     report.not_negative(scenario.damping.mass_proportional, "damping.mass_proportional");
     report.not_negative(scenario.damping.stiffness_proportional, "damping.stiffness_proportional");
@@ -232,6 +251,12 @@ fn check_operation(report: &mut Report, operation: &Operation) {
         format!("must be at most {FASTEST_ROTATION} rpm either way"),
     );
     report.usual(speed, "operation.rotation_speed_rpm", &USUAL_ROTATION, "rpm either way");
+    report.number(
+        operation.axial_speed,
+        "operation.axial_speed",
+        |speed| speed.abs() <= FASTEST_TRIP,
+        format!("must be at most {FASTEST_TRIP} m/s either way"),
+    );
     if let Some(length) = operation.length_above {
         report.number(
             length,

@@ -3,10 +3,11 @@
 use nalgebra::SMatrix;
 
 use super::along_element::{ContactSegment, Place, Plane};
-use super::law::ContactParameters;
+use super::body::BodyMotion;
+use super::law::{ContactParameters, FrictionAtRest};
 use super::node::ContactNode;
 use super::rest::smooth_static_contact;
-use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
+use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V, W};
 use crate::string::beam::{ElementMatrix, ElementVector};
 
 /// Loads of the wall on an element at rest.
@@ -59,9 +60,9 @@ pub fn static_segment(
     law: &ContactParameters<f64>,
     segment: &ContactSegment<f64>,
     values: &ElementVector,
-    rotation_speed: f64,
+    motion: BodyMotion,
 ) -> Option<StaticSegmentForce> {
-    let friction = law.friction_at_rest(&segment.wall, rotation_speed);
+    let friction = law.friction_at_rest(&segment.wall, motion);
     let elastic = Elastic::of(law, segment, values, friction)?;
     let mut force = ElementVector::zeros();
     let mut ends = [0.0; 2];
@@ -75,8 +76,8 @@ pub fn static_segment(
 
 /// The elastic force of the wall along an element, with friction in proportion to it.
 struct Elastic {
-    /// Points of the force, with its direction there: along u and v, and the arm of its torque \[m\].
-    points: [(PressedPoint, [f64; 3]); 2],
+    /// Points of the force, with its direction there: along u and v, the arm of its torque \[m\], and along e3.
+    points: [(PressedPoint, [f64; 4]); 2],
     /// Its derivatives by the nodal values, with the sign of a left-hand side.
     stiffness: ElementMatrix,
     /// Damping of the law over the part in the wall \[N s/m\].
@@ -96,21 +97,24 @@ struct PressedPoint {
 }
 
 impl Elastic {
-    /// The force at nodal values, with a coefficient of friction; `None` without contact.
+    /// The force at nodal values, with coefficients of friction; `None` without contact.
     fn of(
         law: &ContactParameters<f64>,
         segment: &ContactSegment<f64>,
         values: &ElementVector,
-        friction: f64,
+        friction: FrictionAtRest,
     ) -> Option<Self> {
         let of_planes = planes(values);
         let pressed = segment.pressed(&of_planes).filter(|pressed| pressed.depth > 0.0)?;
         let share = segment.wall.stiffness_share;
         let (stiffness, slope) = (law.stiffness(pressed.rms) * share, law.elastic_slope(pressed.rms) * share);
-        let (along, arm) =
-            (friction * law.tangential_share, friction * law.torque_share * segment.wall.contact_radius);
+        let (along, arm) = (
+            friction.about * law.tangential_share,
+            friction.about * law.torque_share * segment.wall.contact_radius,
+        );
+        let axial = friction.along * law.tangential_share;
         // The force is -F_n d with the direction d = n + mu t, which turns with n.
-        let direction = |[n_u, n_v]: [f64; 2]| [n_u - along * n_v, n_v + along * n_u, arm];
+        let direction = |[n_u, n_v]: [f64; 2]| [n_u - along * n_v, n_v + along * n_u, arm, axial];
         let mut sum = ElementMatrix::zeros();
         let (mut pushed, mut inwards) = (ElementVector::zeros(), ElementVector::zeros());
         let points = [0, 1].map(|k| {
@@ -121,12 +125,12 @@ impl Elastic {
             let along_wall = [-outwards[1], outwards[0]];
             let turned = direction(along_wall);
             let turns = normal / radius;
-            sum += rows.matrix(&[0, 1, 2].map(|row| {
+            sum += rows.matrix(&[0, 1, 2, 3].map(|row| {
                 let of_row = if row < 2 { turns * turned[row] } else { 0.0 };
-                [of_row * along_wall[0], of_row * along_wall[1], 0.0]
+                [of_row * along_wall[0], of_row * along_wall[1], 0.0, 0.0]
             }));
             pushed += rows.load(direction(outwards)) * (part * pressed.depth);
-            inwards += rows.load([outwards[0], outwards[1], 0.0]) * (part * pressed.depth);
+            inwards += rows.load([outwards[0], outwards[1], 0.0, 0.0]) * (part * pressed.depth);
             (PressedPoint { at: place.at, rows, outwards, part, normal }, direction(outwards))
         });
         let normals = segment.normals(&of_planes).map(|(place, [n_u, n_v])| {
@@ -164,7 +168,7 @@ pub fn smooth_static_segment(
     law: &ContactParameters<f64>,
     segment: &ContactSegment<f64>,
     values: &ElementVector,
-    rotation_speed: f64,
+    motion: BodyMotion,
     width: f64,
     friction_share: f64,
 ) -> SmoothSegmentForce {
@@ -177,9 +181,9 @@ pub fn smooth_static_segment(
     for (place, wall) in segment.whole() {
         let rows = place.rows();
         let position = [rows.u(values), rows.v(values)];
-        let contact = smooth_static_contact(law, &wall, position, rotation_speed, width, friction_share);
+        let contact = smooth_static_contact(law, &wall, position, motion, width, friction_share);
         sum.force += rows.load(contact.force);
-        sum.tangent += rows.matrix(&with_column_of_twist(&contact.tangent));
+        sum.tangent += rows.matrix(&with_other_columns(&contact.tangent));
         sum.by_width += rows.load(contact.by_width);
         sum.by_friction += rows.load(contact.by_friction);
     }
@@ -196,18 +200,20 @@ pub fn sliding_segment(
     let radius = segment.wall.contact_radius;
     let sliding_speed = rotation_speed * radius;
     let friction = law.friction_of(&segment.wall);
-    let elastic = Elastic::of(law, segment, values, friction.coefficient(sliding_speed))?;
+    let about = friction.coefficient(sliding_speed);
+    let elastic = Elastic::of(law, segment, values, FrictionAtRest { about, along: 0.0 })?;
     let friction_slope = friction.slope(sliding_speed);
     let mut damping = ElementMatrix::zeros();
     let mut rubbing = [0.0; 2];
     for (point, direction) in &elastic.points {
         // The same as in sliding_tangent for a node.
         let [n_u, n_v] = point.outwards;
-        let (normal, tangent) = ([n_u, n_v, 0.0], [-n_v, n_u, radius]);
-        let rubbed = [-law.tangential_share * n_v, law.tangential_share * n_u, law.torque_share * radius];
+        let (normal, tangent) = ([n_u, n_v, 0.0, 0.0], [-n_v, n_u, radius, 0.0]);
+        let rubbed =
+            [-law.tangential_share * n_v, law.tangential_share * n_u, law.torque_share * radius, 0.0];
         let (damps, feeds) = (point.part * elastic.damping, point.normal * friction_slope);
-        let of_place = [0, 1, 2].map(|row| {
-            [0, 1, 2]
+        let of_place = [0, 1, 2, 3].map(|row| {
+            [0, 1, 2, 3]
                 .map(|column| damps * direction[row] * normal[column] + feeds * rubbed[row] * tangent[column])
         });
         damping += point.rows.matrix(&of_place);
@@ -225,8 +231,8 @@ pub fn whole_segment(segment: &ContactSegment<f64>) -> [([ElementVector; 3], Con
     })
 }
 
-/// Rows that map the nodal values of an element to u, v and the twist at a place.
-struct Rows(SMatrix<f64, 3, { 2 * DOFS }>);
+/// Rows that map the nodal values of an element to u, v, the twist and w at a place.
+struct Rows(SMatrix<f64, 4, { 2 * DOFS }>);
 
 impl Place<f64> {
     fn rows(&self) -> Rows {
@@ -238,7 +244,9 @@ impl Place<f64> {
             (rows[(0, node + U)], rows[(0, node + THETA_Y)]) = (deflection, turn);
             (rows[(1, node + V)], rows[(1, node + THETA_X)]) = (deflection, -turn);
         }
-        (rows[(2, THETA_Z)], rows[(2, DOFS + THETA_Z)]) = (1.0 - self.at, self.at);
+        for (row, dof) in [(2, THETA_Z), (3, W)] {
+            (rows[(row, dof)], rows[(row, DOFS + dof)]) = (1.0 - self.at, self.at);
+        }
         Rows(rows)
     }
 }
@@ -252,19 +260,19 @@ impl Rows {
         (self.0.row(1) * values)[0]
     }
 
-    /// Nodal loads of forces along u and v and a torque at the place.
-    fn load(&self, force: [f64; 3]) -> ElementVector {
-        self.0.transpose() * nalgebra::Vector3::from(force)
+    /// Nodal loads of forces along u and v, a torque and a force along e3 at the place.
+    fn load(&self, force: [f64; 4]) -> ElementVector {
+        self.0.transpose() * nalgebra::Vector4::from(force)
     }
 
     /// Nodal matrix of a matrix of the place.
-    fn matrix(&self, of_place: &[[f64; 3]; 3]) -> ElementMatrix {
-        let matrix = SMatrix::<f64, 3, 3>::from_fn(|row, column| of_place[row][column]);
+    fn matrix(&self, of_place: &[[f64; 4]; 4]) -> ElementMatrix {
+        let matrix = SMatrix::<f64, 4, 4>::from_fn(|row, column| of_place[row][column]);
         self.0.transpose() * matrix * self.0
     }
 }
 
-/// Tangent by u, v and the twist, from one by u and v: contact at rest does not depend on the twist.
-fn with_column_of_twist(tangent: &[[f64; 2]; 3]) -> [[f64; 3]; 3] {
-    tangent.map(|[by_u, by_v]| [by_u, by_v, 0.0])
+/// Tangent by u, v, the twist and w, from one by u and v: contact at rest does not depend on the others.
+fn with_other_columns(tangent: &[[f64; 2]; 4]) -> [[f64; 4]; 4] {
+    tangent.map(|[by_u, by_v]| [by_u, by_v, 0.0, 0.0])
 }

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction};
 
+use super::body::BodyMotion;
 use super::friction::Friction;
 use super::node::ContactNode;
 use crate::math::linalg::Lane;
@@ -25,6 +26,15 @@ pub struct ContactParameters<L> {
     pub(super) tangential_share: L,
     /// 1 if friction turns the string, 0 if that is switched off.
     pub(super) torque_share: L,
+}
+
+/// Friction coefficients of a node at rest, with the signs of the surface's velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionAtRest {
+    /// About the axis.
+    pub about: f64,
+    /// Along the axis.
+    pub along: f64,
 }
 
 /// A coefficient that rises by an arctangent from half its limit at P = 0 (11).
@@ -120,15 +130,26 @@ impl ContactParameters<f64> {
         }
     }
 
-    /// Friction coefficient of a node at rest in a frame that turns with `rotation_speed` Omega \[rad/s\], in its sense: mu_s at
-    /// break-away (36), or mu at the sliding speed Omega R_e (14). Without rotation friction has no sense, and is zero.
-    pub fn friction_at_rest(&self, node: &ContactNode<f64>, rotation_speed: f64) -> f64 {
+    /// Friction coefficients about the axis and along it of a node at rest on a string that moves as a body: mu along the direction of the surface's
+    /// velocity (Omega R_e, V), with mu_s at break-away (36), or mu at the sliding speed (14). Without motion friction has no sense, and is zero.
+    pub fn friction_at_rest(&self, node: &ContactNode<f64>, motion: BodyMotion) -> FrictionAtRest {
+        let BodyMotion { rotation_speed, axial_speed } = motion;
         let friction = self.friction_of(node);
-        match self.at_rest {
-            StartFriction::BreakAway if rotation_speed == 0.0 => 0.0,
-            StartFriction::BreakAway => rotation_speed.signum() * friction.at_break_away,
-            StartFriction::Sliding => friction.coefficient(rotation_speed * node.contact_radius),
+        let surface_speed = rotation_speed * node.contact_radius;
+        if axial_speed == 0.0 {
+            let about = match self.at_rest {
+                StartFriction::BreakAway if rotation_speed == 0.0 => 0.0,
+                StartFriction::BreakAway => rotation_speed.signum() * friction.at_break_away,
+                StartFriction::Sliding => friction.coefficient(surface_speed),
+            };
+            return FrictionAtRest { about, along: 0.0 };
         }
+        let speed = surface_speed.hypot(axial_speed);
+        let friction = match self.at_rest {
+            StartFriction::BreakAway => friction.at_break_away,
+            StartFriction::Sliding => friction.coefficient(speed),
+        };
+        FrictionAtRest { about: friction * (surface_speed / speed), along: friction * (axial_speed / speed) }
     }
 
     /// Friction of a contact node in each lane; absent if all have that of the law.

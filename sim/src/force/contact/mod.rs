@@ -10,6 +10,7 @@
 
 mod along_element;
 mod along_element_tangents;
+mod body;
 mod friction;
 mod law;
 mod motion;
@@ -29,8 +30,9 @@ pub use along_element_tangents::{
     SlidingSegmentTangent, SmoothSegmentForce, StaticSegmentForce, planes, sliding_segment,
     smooth_static_segment, static_segment, whole_segment,
 };
+pub use body::BodyMotion;
 pub use friction::Friction;
-pub use law::ContactParameters;
+pub use law::{ContactParameters, FrictionAtRest};
 pub use motion::{ContactForce, LateralMotion, Surface, Yielding, dynamic_contact, implicit_contact};
 pub use node::ContactNode;
 pub use rest::{SmoothContactForce, StaticContactForce, smooth_static_contact, static_contact};

@@ -3,7 +3,7 @@ use std::f64::consts::{PI, TAU};
 use drillsweep_scenario::{ActiveEffects, Adhesion, ContactLaw, StartFriction, WallLaw};
 
 use super::*;
-use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V};
+use crate::math::dof::{DOFS, THETA_X, THETA_Y, THETA_Z, U, V, W};
 use crate::math::linalg::{Four, Lane};
 use crate::string::beam::{ElementMatrix, ElementVector, Shape};
 
@@ -34,6 +34,11 @@ const NODE: ContactNode<f64> = ContactNode {
     damping_share: 1.0,
     friction: None,
 };
+
+/// Rotation at a speed \[rad/s\].
+fn turning(rotation_speed: f64) -> BodyMotion {
+    BodyMotion::rotation(rotation_speed)
+}
 
 fn parameters(law: &ContactLaw) -> ContactParameters<f64> {
     ContactParameters::new(law, &ActiveEffects::ALL)
@@ -94,7 +99,7 @@ fn a_node_has_its_own_shares_of_stiffness_and_damping() {
     let (elastic, damped) = (0.3 * elastic_force(&BASE, 2e-4), 2.0 * damping(&BASE, 2e-4) * 0.3);
     assert_close(force.elastic, elastic, 1e-11);
     assert_close(force.normal, elastic + damped, 1e-11);
-    let at_rest = static_contact(&parameters(&FRICTIONLESS), &node, 0.0402, 0.0, 12.0);
+    let at_rest = static_contact(&parameters(&FRICTIONLESS), &node, 0.0402, 0.0, turning(12.0));
     assert_close(at_rest.normal, elastic, 1e-11);
     // A length may have damping if a node has none: shares are then of 1 N s/m.
     let undamped = ContactLaw { law: WallLaw::PerLength, damping: 0.0, ..FRICTIONLESS };
@@ -149,11 +154,11 @@ fn there_is_no_force_short_of_the_wall() {
     for radius in [0.0, 0.02, NODE.clearance] {
         let at = LateralMotion { u: radius, ..motion };
         assert_eq!(dynamic_contact(&law, &NODE, &at, 12.0), ContactForce::none());
-        assert_eq!(static_contact(&law, &NODE, radius, 0.0, 12.0), StaticContactForce::default());
+        assert_eq!(static_contact(&law, &NODE, radius, 0.0, turning(12.0)), StaticContactForce::default());
     }
     let no_clearance = ContactNode { clearance: 0.0, ..NODE };
     assert_eq!(dynamic_contact(&law, &no_clearance, &motion, 12.0), ContactForce::none());
-    assert_eq!(static_contact(&law, &no_clearance, 0.0, 0.0, 12.0), StaticContactForce::default());
+    assert_eq!(static_contact(&law, &no_clearance, 0.0, 0.0, turning(12.0)), StaticContactForce::default());
 }
 
 #[test]
@@ -218,7 +223,7 @@ fn friction_force_and_friction_torque_switch_off_separately() {
         let law =
             ContactParameters::new(&BASE, &ActiveEffects { friction, friction_torque, ..ActiveEffects::ALL });
         let moving = dynamic_contact(&law, &NODE, &motion, 12.0);
-        let resting = static_contact(&law, &NODE, 0.0402, 0.0, 12.0);
+        let resting = static_contact(&law, &NODE, 0.0402, 0.0, turning(12.0));
         [moving.force_v, moving.torque_z, resting.force_v, resting.torque_z].map(|force| force != 0.0)
     };
     assert_eq!(with(true, true), [true, true, true, true]);
@@ -231,7 +236,7 @@ fn friction_force_and_friction_torque_switch_off_separately() {
 fn static_friction_acts_in_the_sense_of_rotation() {
     let law = parameters(&BASE);
     let (sin, cos) = 0.7f64.sin_cos();
-    let force = |speed| static_contact(&law, &NODE, 0.0402 * cos, 0.0402 * sin, speed);
+    let force = |speed| static_contact(&law, &NODE, 0.0402 * cos, 0.0402 * sin, turning(speed));
     let normal = elastic_force(&BASE, 0.0402 - 0.04);
     for (speed, friction) in [(12.6, 0.3), (-12.6, -0.3), (0.0, 0.0)] {
         let force = force(speed);
@@ -254,7 +259,7 @@ fn friction_of_the_sliding_start_is_that_of_the_curve_at_the_speed_of_the_surfac
     };
     let (u, v) = (0.0402 * 0.7f64.cos(), 0.0402 * 0.7f64.sin());
     for speed in [12.6, -12.6, 0.3, 0.0] {
-        let force = static_contact(&law, &NODE, u, v, speed);
+        let force = static_contact(&law, &NODE, u, v, turning(speed));
         let friction = printed(speed * NODE.contact_radius) * force.normal;
         assert_close(force.torque_z, -friction * NODE.contact_radius, 1e-12);
         // The same force as of a node that the turning frame carries along the wall.
@@ -269,7 +274,7 @@ fn friction_of_the_sliding_start_is_that_of_the_curve_at_the_speed_of_the_surfac
 fn a_share_of_the_friction_scales_friction_alone() {
     for start in [StartFriction::BreakAway, StartFriction::Sliding] {
         let whole = parameters(&BASE).with_friction_at_rest(start);
-        let force = |law| static_contact(&law, &NODE, 0.0402, 0.0, 12.6);
+        let force = |law| static_contact(&law, &NODE, 0.0402, 0.0, turning(12.6));
         let (of_whole, of_share) = (force(whole), force(whole.with_friction_share(0.25)));
         assert_close(of_share.force_u, of_whole.force_u, 1e-15);
         assert_close(of_share.force_v, 0.25 * of_whole.force_v, 1e-15);
@@ -284,10 +289,10 @@ fn static_tangent_is_the_derivative_to_second_order() {
     for (angle, rotation_speed) in [(0.3f64, 12.6), (2.0, -12.6), (4.4, 12.6), (5.5, 0.0)] {
         let (u, v) = (0.04003 * angle.cos(), 0.04003 * angle.sin());
         let at = |u, v| {
-            let force = static_contact(&law, &NODE, u, v, rotation_speed);
+            let force = static_contact(&law, &NODE, u, v, turning(rotation_speed));
             [force.force_u, force.force_v, force.torque_z]
         };
-        let tangent = static_contact(&law, &NODE, u, v, rotation_speed).tangent;
+        let tangent = static_contact(&law, &NODE, u, v, turning(rotation_speed)).tangent;
         let scale = tangent.as_flattened().iter().fold(0.0f64, |largest, entry| largest.max(entry.abs()));
         let error = |step: f64| {
             let by_u = [at(u + step, v), at(u - step, v)];
@@ -311,13 +316,13 @@ fn static_tangent_is_the_derivative_to_second_order() {
 fn smooth_wall_has_the_derivatives_of_its_force() {
     let law = parameters(&SOFT);
     let at = |[u, v, width, friction]: [f64; 4]| {
-        smooth_static_contact(&law, &NODE, [u, v], 12.6, width, friction).force
+        smooth_static_contact(&law, &NODE, [u, v], turning(12.6), width, friction).force
     };
     // In the middle of the hole, short of the wall, and in it.
     for (u, v) in [(0.0, 0.0), (0.02, -0.01), (0.03, 0.026), (-0.03, 0.027)] {
         for width in [1e-2, 1e-3] {
             let point = [u, v, width, 0.6];
-            let contact = smooth_static_contact(&law, &NODE, [u, v], 12.6, width, 0.6);
+            let contact = smooth_static_contact(&law, &NODE, [u, v], turning(12.6), width, 0.6);
             for row in 0..3 {
                 let [by_u, by_v] = contact.tangent[row];
                 let derivatives = [by_u, by_v, contact.by_width[row], contact.by_friction[row]];
@@ -345,10 +350,10 @@ fn smooth_wall_has_the_derivatives_of_its_force() {
 fn smooth_wall_becomes_the_wall_as_its_width_goes_to_zero() {
     let law = parameters(&BASE);
     for (u, v) in [(0.01, 0.02), (0.0305, 0.026), (-0.0241, 0.0321)] {
-        let sharp = static_contact(&law, &NODE, u, v, -12.6);
+        let sharp = static_contact(&law, &NODE, u, v, turning(-12.6));
         let expected = [sharp.force_u, sharp.force_v, sharp.torque_z];
         let error = |width: f64| {
-            let smooth = smooth_static_contact(&law, &NODE, [u, v], -12.6, width, 1.0);
+            let smooth = smooth_static_contact(&law, &NODE, [u, v], turning(-12.6), width, 1.0);
             let pairs = smooth.force.into_iter().zip(expected);
             pairs.fold(0.0f64, |most, (smooth, sharp)| most.max((smooth - sharp).abs()))
         };
@@ -788,7 +793,7 @@ fn loads_are_derivatives_of_the_energy_of_any_part_in_the_wall() {
         for sharpness in [1e14, 3e3] {
             let law = parameters(&ContactLaw { stiffness_sharpness: sharpness, ..FRICTIONLESS });
             let energy = |values: &ElementVector| SEGMENT.potential_energy(&law, &planes(values));
-            let Some(contact) = static_segment(&law, &SEGMENT, &values, 1.0) else { continue };
+            let Some(contact) = static_segment(&law, &SEGMENT, &values, turning(1.0)) else { continue };
             assert!(SEGMENT.may_touch(&planes(&values)));
             let [upper, _, lower] = [0.0, 0.5, 1.0].map(|at| {
                 let shape = SEGMENT.place(at).shape;
@@ -820,7 +825,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
     let clearance = SEGMENT.wall.clearance;
     for (upper, lower) in [(1e-4, 3e-4), (3e-4, 1e-9), (-1e-4, 2e-4), (5e-4, -3e-4), (-1e-6, 1e-3)] {
         let values = rigid(clearance + upper, clearance + lower);
-        let contact = static_segment(&law, &SEGMENT, &values, 1.0).unwrap();
+        let contact = static_segment(&law, &SEGMENT, &values, turning(1.0)).unwrap();
         // The part from the zero of the gap to the end that is in the wall.
         let slope = (lower - upper) / SEGMENT.length;
         let zero = (-upper / slope).clamp(0.0, SEGMENT.length);
@@ -861,7 +866,7 @@ fn the_wall_along_a_rigid_element_is_the_integral_over_the_part_in_it() {
     }
     // Short of the wall there is none, and the loads of the caller stay.
     for values in [rigid(0.02, 0.0269), rigid(clearance - 1e-9, clearance - 1e-4)] {
-        assert!(static_segment(&law, &SEGMENT, &values, 1.0).is_none());
+        assert!(static_segment(&law, &SEGMENT, &values, turning(1.0)).is_none());
         let before = SegmentForce { ends: [1.0, 2.0], ..SegmentForce::none() };
         let mut force = before;
         let motion = motion_of(&values, &ElementVector::zeros());
@@ -889,7 +894,8 @@ fn contact_of_an_element_grows_from_zero_at_any_place() {
         values
     };
     let loads = |values: &ElementVector| {
-        static_segment(&law, &SEGMENT, values, 1.0).map_or(ElementVector::zeros(), |contact| contact.force)
+        static_segment(&law, &SEGMENT, values, turning(1.0))
+            .map_or(ElementVector::zeros(), |contact| contact.force)
     };
     for motion in [&bulge as &dyn Fn(f64) -> ElementVector, &roll, &hollow] {
         // From off the wall to whole contact: no step of the loads is larger than the whole stiffness allows.
@@ -915,7 +921,7 @@ fn tangents_along_an_element_are_derivatives_of_its_loads() {
     let mut values = rigid(clearance + 3e-4, clearance + 5e-4);
     (values[V], values[DOFS + V], values[THETA_X]) = (4e-3, 3e-3, 1e-3);
     let zero = ElementVector::zeros();
-    let static_force = |values: &ElementVector| static_segment(&law, &SEGMENT, values, 1.0).unwrap();
+    let static_force = |values: &ElementVector| static_segment(&law, &SEGMENT, values, turning(1.0)).unwrap();
     let moving = |values: &ElementVector, rates: &ElementVector| {
         let mut force = SegmentForce::none();
         assert!(dynamic_segment(&law, &SEGMENT, &motion_of(values, rates), 12.0, &mut force));
@@ -948,7 +954,7 @@ fn tangent_of_a_partial_contact_follows_its_moving_end() {
     for (upper, lower) in [(3e-4, -2e-4), (-1e-4, 4e-4)] {
         let mut values = rigid(clearance + upper, clearance + lower);
         values[THETA_Y] += 3e-4;
-        let force = |values: &ElementVector| static_segment(&law, &SEGMENT, values, 1.0).unwrap();
+        let force = |values: &ElementVector| static_segment(&law, &SEGMENT, values, turning(1.0)).unwrap();
         let tangent = force(&values).tangent;
         for dof in [U, V, THETA_X, THETA_Y, DOFS + U, DOFS + V, DOFS + THETA_X, DOFS + THETA_Y] {
             let unit = ElementVector::from_fn(|i, _| if i == dof { 1e-9 } else { 0.0 });
@@ -1320,7 +1326,7 @@ fn loads_of_friction_along_an_element_are_linear_in_its_share() {
     };
     let of = |share: f64| {
         let law = parameters(&BASE).with_friction_share(share);
-        let resting = static_segment(&law, &SEGMENT, &values, 12.0).unwrap();
+        let resting = static_segment(&law, &SEGMENT, &values, turning(12.0)).unwrap();
         let sliding = sliding_segment(&law, &SEGMENT, &values, 12.0).unwrap();
         [
             ElementMatrix::from_diagonal(&moving(&law)),
@@ -1356,7 +1362,7 @@ fn smooth_wall_along_an_element_has_the_derivatives_of_its_force() {
     (values[V], values[DOFS + V], values[THETA_X]) = (0.01, -0.004, 2e-3);
     let (width, share) = (1e-3, 0.6);
     let at = |values: &ElementVector, width: f64, share: f64| {
-        smooth_static_segment(&law, &SEGMENT, values, 12.6, width, share)
+        smooth_static_segment(&law, &SEGMENT, values, turning(12.6), width, share)
     };
     let here = at(&values, width, share);
     let assert_derivative =
@@ -1382,9 +1388,9 @@ fn smooth_wall_along_an_element_has_the_derivatives_of_its_force() {
 fn smooth_wall_along_an_element_becomes_the_wall_as_its_width_goes_to_zero() {
     let law = parameters(&ContactLaw { stiffness_sharpness: 1e14, ..BASE });
     for values in &elements_in_the_wall()[..2] {
-        let wall = static_segment(&law, &SEGMENT, values, -12.6).unwrap().force;
+        let wall = static_segment(&law, &SEGMENT, values, turning(-12.6)).unwrap().force;
         let error = |width: f64| {
-            (smooth_static_segment(&law, &SEGMENT, values, -12.6, width, 1.0).force - wall).norm()
+            (smooth_static_segment(&law, &SEGMENT, values, turning(-12.6), width, 1.0).force - wall).norm()
                 / wall.norm()
         };
         let (coarse, fine) = (error(1e-5), error(1e-6));
@@ -1402,7 +1408,7 @@ fn smooth_wall_along_an_element_becomes_the_wall_as_its_width_goes_to_zero() {
 fn an_element_across_the_hole_touches_on_both_sides_alike() {
     let law = parameters(&FRICTIONLESS);
     let outside = SEGMENT.wall.clearance + 2e-4;
-    let contact = static_segment(&law, &SEGMENT, &rigid(outside, -outside), 1.0).unwrap();
+    let contact = static_segment(&law, &SEGMENT, &rigid(outside, -outside), turning(1.0)).unwrap();
     assert!(contact.force[U] < -1.0 && contact.tangent.norm().is_finite());
     assert_close(contact.force[DOFS + U], -contact.force[U], 1e-12);
     assert_close(contact.ends[0], contact.ends[1], 1e-12);
@@ -1432,8 +1438,8 @@ fn shares_of_a_node_scale_the_law() {
             let forces = |law: &ContactParameters<f64>, node: &ContactNode<f64>| {
                 let moving = dynamic_contact(law, node, &motion, 0.3);
                 let implicit = implicit_contact(law, node, &motion, 0.3, &yielding);
-                let resting = static_contact(law, node, u, v, 0.3);
-                let smooth = smooth_static_contact(law, node, [u, v], 0.3, 1e-5, 0.6);
+                let resting = static_contact(law, node, u, v, turning(0.3));
+                let smooth = smooth_static_contact(law, node, [u, v], turning(0.3), 1e-5, 0.6);
                 let sliding = sliding_tangent(law, node, u, v, 0.3).unwrap();
                 let of_motion =
                     [moving, implicit].map(|contact| [contact.force_u, contact.force_v, contact.torque_z]);
@@ -1520,8 +1526,8 @@ fn friction_and_its_slope_by_one_division_are_those_of_the_curve() {
 fn a_wall_of_no_width_is_the_wall() {
     let law = parameters(&BASE);
     for (u, v) in [(0.0, 0.0), (0.01, -0.02), (NODE.clearance, 0.0), (0.0302, 0.0268)] {
-        let sharp = static_contact(&law, &NODE, u, v, 12.6);
-        let smooth = smooth_static_contact(&law, &NODE, [u, v], 12.6, 0.0, 1.0);
+        let sharp = static_contact(&law, &NODE, u, v, turning(12.6));
+        let smooth = smooth_static_contact(&law, &NODE, [u, v], turning(12.6), 0.0, 1.0);
         for (found, expected) in smooth.force.into_iter().zip([sharp.force_u, sharp.force_v, sharp.torque_z])
         {
             assert_close(found, expected, 1e-9);
@@ -1532,7 +1538,7 @@ fn a_wall_of_no_width_is_the_wall() {
 #[test]
 fn a_share_of_the_friction_of_the_law_is_one_of_the_smooth_wall() {
     let (law, less) = (parameters(&BASE), parameters(&BASE).with_friction_share(0.25));
-    let of = |law, share| smooth_static_contact(law, &NODE, [0.03, -0.026], 12.6, 1e-3, share);
+    let of = |law, share| smooth_static_contact(law, &NODE, [0.03, -0.026], turning(12.6), 1e-3, share);
     let (found, expected) = (of(&less, 1.0), of(&law, 0.25));
     assert_eq!(
         (found.force, found.tangent, found.by_width),
@@ -1671,10 +1677,74 @@ fn elements_of_a_wall_at_nodes_are_shared_between_nodes_of_their_clearance() {
 #[test]
 fn friction_of_a_wall_at_rest_is_static_or_that_of_sliding() {
     let wall = wall(&ActiveEffects::ALL);
-    let mu = |wall: &Wall| wall.law().friction_at_rest(&NODE, 0.5);
+    let mu = |wall: &Wall| wall.law().friction_at_rest(&NODE, turning(0.5)).about;
     assert_eq!(mu(&wall), BASE.static_friction);
     let sliding = wall.with_friction_at_rest(StartFriction::Sliding);
     assert_eq!(mu(&sliding), wall.law().friction.coefficient(0.5 * NODE.contact_radius));
+}
+
+#[test]
+fn friction_of_a_string_that_turns_and_moves_opposes_the_velocity_of_its_surface() {
+    let static_force = |at_rest, motion| {
+        static_contact(&parameters(&BASE).with_friction_at_rest(at_rest), &NODE, 0.0402, 0.0, motion)
+    };
+    for at_rest in [StartFriction::BreakAway, StartFriction::Sliding] {
+        // A surface as fast along the axis as about it slides at 45 degrees.
+        let speed = 0.3;
+        let motion = BodyMotion { rotation_speed: speed / NODE.contact_radius, axial_speed: -speed };
+        let force = static_force(at_rest, motion);
+        let slid = speed * 2.0_f64.sqrt();
+        let mu = match at_rest {
+            StartFriction::BreakAway => BASE.static_friction,
+            StartFriction::Sliding => parameters(&BASE).friction.coefficient(slid),
+        };
+        let share = mu * force.normal / 2.0_f64.sqrt();
+        assert_close(force.force_v, -share, 1e-12);
+        assert_close(force.force_w, share, 1e-12);
+        assert_close(force.torque_z, -share * NODE.contact_radius, 1e-12);
+        // Without rotation all friction is along the axis.
+        let pulled = static_force(at_rest, BodyMotion { rotation_speed: 0.0, axial_speed: -slid });
+        assert_close(pulled.force_w, mu * force.normal, 1e-12);
+        assert_eq!((pulled.force_v, pulled.torque_z), (0.0, 0.0));
+    }
+    let slow =
+        |axial_speed| static_force(StartFriction::Sliding, BodyMotion { axial_speed, ..turning(12.0) });
+    assert_close(slow(1e-9).force_v, slow(0.0).force_v, 1e-12);
+}
+
+#[test]
+fn axial_friction_has_its_tangent_at_nodes_and_along_elements() {
+    let law = parameters(&SOFT).with_friction_at_rest(StartFriction::Sliding);
+    let motion = BodyMotion { rotation_speed: 9.0, axial_speed: 0.4 };
+    let (u, v) = (0.0402 * 0.8, 0.0402 * 0.6);
+    let node = |u, v| static_contact(&law, &NODE, u, v, motion);
+    let smooth = |u: f64, v: f64| smooth_static_contact(&law, &NODE, [u, v], motion, 1e-3, 0.7);
+    let step = 1e-8;
+    for (column, [by_u, by_v]) in [[step, 0.0], [0.0, step]].into_iter().enumerate() {
+        let (ahead, behind) = (node(u + by_u, v + by_v), node(u - by_u, v - by_v));
+        let slope = (ahead.force_w - behind.force_w) / (2.0 * step);
+        assert_close(node(u, v).tangent[3][column], slope, 1e-6);
+        let (ahead, behind) = (smooth(u + by_u, v + by_v), smooth(u - by_u, v - by_v));
+        let slope = (ahead.force[3] - behind.force[3]) / (2.0 * step);
+        assert_close(smooth(u, v).tangent[3][column], slope, 1e-6);
+    }
+    let values = rigid(0.0402, 0.0405);
+    let of = |values: &ElementVector| static_segment(&law, &SEGMENT, values, motion).unwrap();
+    let contact = of(&values);
+    let direction = law.friction_at_rest(&SEGMENT.wall, motion);
+    let drag = contact.force[W] + contact.force[DOFS + W];
+    assert_close(drag, -direction.along * (contact.ends[0] + contact.ends[1]), 1e-12);
+    for column in [U, THETA_Y, DOFS + U, DOFS + THETA_Y] {
+        let moved = |by: f64| {
+            let mut values = values;
+            values[column] += by;
+            of(&values).force
+        };
+        let slope = (moved(step) - moved(-step)) / (2.0 * step);
+        for row in [W, DOFS + W] {
+            assert_close(contact.tangent[(row, column)], slope[row], 1e-5);
+        }
+    }
 }
 
 /// Nodal values of a bent element of a helix at `radius` \[m\], of which both ends are `angle` \[rad\] from its middle.
@@ -1696,7 +1766,7 @@ fn loads_on_an_element_that_only_slides_with_the_rotation_are_those_at_rest() {
     let law = parameters(&BASE).with_friction_at_rest(StartFriction::Sliding);
     let helices = [1e-3, 1e-4, 1e-5, 1e-6].map(|gap| helical(SEGMENT.wall.clearance + gap, 0.5));
     for values in elements_in_the_wall().into_iter().chain(helices) {
-        let resting = static_segment(&law, &SEGMENT, &values, 2.0).unwrap();
+        let resting = static_segment(&law, &SEGMENT, &values, turning(2.0)).unwrap();
         let mut moving = SegmentForce::none();
         let motion = motion_of(&values, &ElementVector::zeros());
         assert!(dynamic_segment(&law, &SEGMENT, &motion, 2.0, &mut moving));

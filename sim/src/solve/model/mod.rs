@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use drillsweep_scenario::{ActiveEffects, Scenario, TopCondition, WallLaw};
 
-use crate::force::contact::{ContactNode, ContactSegment, Friction, Wall};
+use crate::force::contact::{BodyMotion, ContactNode, ContactSegment, Friction, Wall};
 use crate::force::drive::Drive;
 use crate::force::effect::active_effects;
 use crate::force::list::nodal_forces;
@@ -127,6 +127,11 @@ impl Model {
         let segments = mesh.elements.iter().zip(elements).filter(|_| by_length).map(segment);
         Wall::new(contact, effects, mesh.nodes.iter().enumerate().map(site), segments)
             .with_friction_at_rest(scenario.statics.friction)
+    }
+
+    /// Velocity of the string as a body.
+    pub fn body_motion(&self) -> BodyMotion {
+        BodyMotion { rotation_speed: self.rotation_speed, axial_speed: self.scenario.operation.axial_speed }
     }
 
     /// Number of nodes.

@@ -32,8 +32,9 @@ use walk::{eigenpairs, uncounted_eigenpairs};
 /// The modes of a model about its equilibrium.
 ///
 /// # Errors
-/// The band is empty or its eigenvalues cannot be found.
+/// The band is empty, its eigenvalues cannot be found, or the string has an axial speed.
 pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> Result<Modes, ModesError> {
+    ModesError::require_no_axial_speed(model.body_motion())?;
     modes_of(&Pencil::about(model, equilibrium), &model.mesh.depths(), search)
 }
 
@@ -47,6 +48,7 @@ pub fn modes_in(
     equilibrium: &Equilibrium,
     bands: &[[f64; 2]],
 ) -> Result<Vec<Mode>, ModesError> {
+    ModesError::require_no_axial_speed(model.body_motion())?;
     let (pencil, depths) = (Pencil::about(model, equilibrium), model.mesh.depths());
     let mut found = Vec::new();
     for &[from_hz, to_hz] in bands {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arnoldi::Eigenpair;
 use super::pencil::Pencil;
+use crate::force::contact::BodyMotion;
 use crate::math::dof::DOFS;
 
 /// Size of `Mode::whirl` from which a mode counts as whirling in one sense.
@@ -138,12 +139,28 @@ pub enum ModesError {
         /// Upper end \[Hz\].
         to_hz: f64,
     },
+    /// The string moves along its axis, whose friction in motion is not part of the model.
+    #[error(
+        "a string with an axial speed ({speed} m/s) has an equilibrium, but no modes: set operation.axial_speed to 0"
+    )]
+    AxialSpeed {
+        /// Axial speed \[m/s\].
+        speed: f64,
+    },
     /// The iteration did not find the eigenvalues around a shift.
     #[error("the eigenvalues around {frequency_hz:.3} Hz could not be found")]
     NotFound {
         /// Frequency of the shift \[Hz\].
         frequency_hz: f64,
     },
+}
+
+impl ModesError {
+    /// Refuses a string with an axial speed: small motions about its equilibrium need axial friction in motion.
+    pub(super) fn require_no_axial_speed(motion: BodyMotion) -> Result<(), Self> {
+        let speed = motion.axial_speed;
+        if speed == 0.0 { Ok(()) } else { Err(Self::AxialSpeed { speed }) }
+    }
 }
 
 impl Mode {

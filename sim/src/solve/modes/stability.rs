@@ -148,6 +148,7 @@ impl Stability {
 /// # Errors
 /// The modes cannot be found.
 pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, ModesError> {
+    ModesError::require_no_axial_speed(model.body_motion())?;
     let pencil = Pencil::about(model, equilibrium);
     let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
     let found = eigenpairs(&pencil, &search)?;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::laid::{Ends, Step};
+use super::strength::Strength;
 
 /// A value with its place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, utoipa::ToSchema)]
@@ -41,13 +42,42 @@ pub struct DragRow {
     pub buckling_ratio: f64,
 }
 
+/// Forces and bending at one depth of a string.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Carried {
+    /// Measured depth \[m\].
+    pub(crate) measured_depth: f64,
+    /// Effective tension \[N\].
+    pub(crate) tension: f64,
+    /// Torque against the rotation \[N m\].
+    pub(crate) torque: f64,
+    /// Force of the wall \[N/m\].
+    pub(crate) side_force: f64,
+    /// Curvature of the hole \[1/m\].
+    pub(crate) curvature: f64,
+    /// Diameter of the hole \[m\].
+    pub(crate) hole_diameter: f64,
+}
+
 impl Margins {
     /// Forces at an end of a step, the upper one (0) or the lower one (1), of which the extremes are kept.
     pub(super) fn note(&mut self, step: &Step<'_>, measured_depth: f64, ends: &Ends, end: usize) -> DragRow {
-        let (tension, torque, side_force) = (ends.tension[end], ends.torque[end], ends.side_force[end]);
-        let strength = &step.part.strength;
-        let yield_ratio = strength.yield_ratio(tension, torque, step.curvature);
-        let buckling_ratio = strength.buckling_ratio(tension, side_force, step.hole_diameter);
+        let carried = Carried {
+            measured_depth,
+            tension: ends.tension[end],
+            torque: ends.torque[end],
+            side_force: ends.side_force[end],
+            curvature: step.curvature,
+            hole_diameter: step.hole_diameter,
+        };
+        self.keep(&step.part.strength, &carried)
+    }
+
+    /// Forces on a cross-section, of which the extremes are kept.
+    pub(crate) fn keep(&mut self, strength: &Strength, carried: &Carried) -> DragRow {
+        let Carried { measured_depth, tension, torque, side_force, curvature, hole_diameter } = *carried;
+        let yield_ratio = strength.yield_ratio(tension, torque, curvature);
+        let buckling_ratio = strength.buckling_ratio(tension, side_force, hole_diameter);
         let keep = |kept: &mut Option<AtDepth>, value: Option<f64>, sign: f64| {
             if let Some(value) = value
                 && kept.is_none_or(|kept| sign * value > sign * kept.value)

@@ -23,6 +23,8 @@ pub use broomstick::BroomstickRow;
 pub use case::{DragCase, DragResult};
 pub use error::{MOST_BROOMSTICK_CASES, SoftStringError};
 pub use fit::{FitError, FitSettings, FittedFriction, FrictionFit, MeasuredPoint, PointResidual};
+pub(crate) use margins::Carried;
 pub use margins::{AtDepth, DragRow, Margins};
 pub use mode::{DragMode, DragSettings};
+pub(crate) use strength::Strength;
 pub use string::SoftString;

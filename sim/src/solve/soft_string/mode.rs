@@ -36,11 +36,11 @@ pub struct DragSettings {
 
 /// Velocity of a string as a body.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// Axial speed \[m/s\], downhole positive.
-    axial_speed: f64,
+    pub(crate) axial_speed: f64,
     /// Speed of rotation, without its sense \[rad/s\].
-    rotation_speed: f64,
+    pub(crate) rotation_speed: f64,
 }
 
 impl DragMode {
@@ -65,7 +65,8 @@ impl DragMode {
         }
     }
 
-    pub(super) fn motion(
+    /// Velocity of the string as a body.
+    pub(crate) fn motion(
         self,
         operation: &Operation,
         settings: &DragSettings,
@@ -85,7 +86,7 @@ impl DragMode {
     }
 
     /// Tension \[N\] and torque \[N m\] at the bit.
-    pub(super) fn bit_loads(self, operation: &Operation) -> [f64; 2] {
+    pub(crate) fn bit_loads(self, operation: &Operation) -> [f64; 2] {
         match self {
             Self::Drill | Self::Slide => [operation.weight_on_bit, operation.torque_on_bit.abs()],
             Self::PickUp | Self::SlackOff | Self::Rotate | Self::Ream => [0.0; 2],

@@ -9,7 +9,7 @@ const VERTICAL: f64 = 1.94;
 
 /// Limits of a cross-section.
 #[derive(Debug, Clone)]
-pub(super) struct Strength {
+pub(crate) struct Strength {
     section: BeamSection,
     /// Yield strength \[Pa\], if the material has a grade.
     yield_strength: Option<f64>,
@@ -18,7 +18,7 @@ pub(super) struct Strength {
 }
 
 impl Strength {
-    pub(super) fn new(section: BeamSection, grade: Option<Grade>, weight: f64) -> Self {
+    pub(crate) fn new(section: BeamSection, grade: Option<Grade>, weight: f64) -> Self {
         let vertical = VERTICAL * (section.bending_stiffness() * weight * weight).cbrt();
         Self { section, yield_strength: grade.map(Grade::yield_strength), vertical }
     }

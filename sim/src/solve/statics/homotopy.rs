@@ -8,15 +8,15 @@
 
 use super::hydraulics::Sections;
 use super::newton::{
-    Contacts, ElementContact, LAST_ITERATIONS, NewtonOutcome, NodeContact, WallAtRest, largest, last_step,
-    linearise_with, tributary_lengths,
+    CONTACT_DOFS, Contacts, ElementContact, LAST_ITERATIONS, NewtonOutcome, NodeContact, WallAtRest, largest,
+    last_step, linearise_with, tributary_lengths,
 };
 use super::path::{self, Growth, Point, add};
 use crate::force::contact::{
     ContactNode, ContactSegment, SmoothContactForce, SmoothSegmentForce, smooth_static_contact,
     smooth_static_segment,
 };
-use crate::math::dof::{DOFS, THETA_Z, U, V};
+use crate::math::dof::{DOFS, U, V};
 use crate::math::linalg::{Block, BlockTridiagonal, Factor};
 use crate::solve::model::{
     Model, NodalVector, add_element_matrix, add_element_vector, clear_held, element_values,
@@ -146,7 +146,7 @@ impl Growth for Homotopy<'_> {
         }
         for node in 0..model.node_count() {
             if let Some(contact) = &contacts.nodes[node] {
-                for (row, dof) in [U, V, THETA_Z].into_iter().enumerate() {
+                for (row, dof) in CONTACT_DOFS.into_iter().enumerate() {
                     slope[node][dof] += contact.by_friction[row] - self.widths[node] * contact.by_width[row];
                 }
             }
@@ -200,14 +200,14 @@ struct SmoothWall {
 impl SmoothWall {
     fn new(homotopy: &Homotopy<'_>, at: &Point) -> Self {
         let Homotopy { model, widths, widths_along, .. } = homotopy;
-        let (law, rotation_speed, share) = (model.wall.law(), model.rotation_speed, at.share);
+        let (law, motion, share) = (model.wall.law(), model.body_motion(), at.share);
         let node = |((site, [u, v, ..]), width): ((&Option<ContactNode<f64>>, &[f64; DOFS]), &f64)| {
             let width = width * (1.0 - share);
-            Some(smooth_static_contact(law, site.as_ref()?, [*u, *v], rotation_speed, width, share))
+            Some(smooth_static_contact(law, site.as_ref()?, [*u, *v], motion, width, share))
         };
         let element = |(e, (segment, width)): (usize, (&ContactSegment<f64>, &f64))| {
             let values = element_values(&at.displacement, e);
-            smooth_static_segment(law, segment, &values, rotation_speed, width * (1.0 - share), share)
+            smooth_static_segment(law, segment, &values, motion, width * (1.0 - share), share)
         };
         Self {
             nodes: model.wall.sites().iter().zip(&at.displacement).zip(widths).map(node).collect(),
@@ -257,7 +257,7 @@ mod tests {
         let beam = model.elements[0].beam.section();
         let weight = beam.density * beam.area * GRAVITY * length / elements;
         for (node, place) in displacement.iter().enumerate().take(60).skip(30) {
-            let contact = contact_at(&model.wall, node, place, model.rotation_speed).unwrap();
+            let contact = contact_at(&model.wall, node, place, model.body_motion()).unwrap();
             let normal = weight / (1.0 + friction * friction).sqrt();
             assert!((contact.normal / normal - 1.0).abs() < 1e-3, "node {node}: {} N", contact.normal);
             let down = model.elements[node].load;

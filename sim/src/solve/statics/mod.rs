@@ -125,8 +125,8 @@ impl Equilibrium {
         friction: StartFriction,
     ) -> Result<Self, StaticsError> {
         let effects = &model.effects;
-        let turns = model.rotation_speed != 0.0 && model.scenario.contact.static_friction != 0.0;
-        if !(turns && effects.contact && (effects.friction || effects.friction_torque)) {
+        let slides = model.body_motion().slides() && model.scenario.contact.static_friction != 0.0;
+        if !(slides && effects.contact && (effects.friction || effects.friction_torque)) {
             return Ok(self.clone());
         }
         let wall = model.wall.with_friction_at_rest(friction);
@@ -222,12 +222,12 @@ impl Equilibrium {
         let torque = rows(|element| &element.torque_row);
         let mut normal_force: Vec<f64> = (0..model.node_count())
             .map(|node| {
-                contact_at(wall, node, &displacement[node], model.rotation_speed)
+                contact_at(wall, node, &displacement[node], model.body_motion())
                     .map_or(0.0, |contact| contact.normal)
             })
             .collect();
         for element in 0..model.elements.len() {
-            let contact = contact_along(&model.wall, element, &displacement, model.rotation_speed);
+            let contact = contact_along(&model.wall, element, &displacement, model.body_motion());
             let [upper, lower] = contact.map_or([0.0; 2], |contact| contact.ends);
             normal_force[element] += upper;
             normal_force[element + 1] += lower;

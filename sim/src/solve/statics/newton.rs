@@ -231,18 +231,21 @@ pub(super) struct WallAtRest<'a> {
 
 impl Contacts for WallAtRest<'_> {
     fn of_node(&self, node: usize) -> Option<NodeContact> {
-        let contact = contact_at(self.wall, node, &self.displacement[node], self.model.rotation_speed)?;
-        Some(([contact.force_u, contact.force_v, contact.torque_z], contact.tangent))
+        let contact = contact_at(self.wall, node, &self.displacement[node], self.model.body_motion())?;
+        Some(([contact.force_u, contact.force_v, contact.torque_z, contact.force_w], contact.tangent))
     }
 
     fn of_element(&self, element: usize) -> Option<ElementContact> {
-        let contact = contact_along(self.wall, element, self.displacement, self.model.rotation_speed)?;
+        let contact = contact_along(self.wall, element, self.displacement, self.model.body_motion())?;
         Some((contact.force, contact.tangent))
     }
 }
 
-/// Forces of a node's contact along u and v and the torque about e3, with their derivatives by u and v.
-pub(super) type NodeContact = ([f64; 3], [[f64; 2]; 3]);
+/// Forces of a node's contact on the [degrees of freedom](CONTACT_DOFS) of contact, with their derivatives by u and v.
+pub(super) type NodeContact = ([f64; CONTACT_DOFS.len()], [[f64; 2]; CONTACT_DOFS.len()]);
+
+/// Degrees of freedom on which contact of a node acts.
+pub(super) const CONTACT_DOFS: [usize; 4] = [U, V, THETA_Z, W];
 
 /// Consistent nodal loads of the wall along an element, with their derivatives by the nodal values.
 pub(super) type ElementContact = (ElementVector, ElementMatrix);
@@ -283,7 +286,7 @@ pub(super) fn linearise_with(
     }
     for (node, (residual, diagonal)) in residual.iter_mut().zip(&mut tangent.diagonal).enumerate() {
         let Some((forces, gradients)) = contacts.of_node(node) else { continue };
-        for (row, (force, gradient)) in [U, V, THETA_Z].into_iter().zip(forces.into_iter().zip(&gradients)) {
+        for (row, (force, gradient)) in CONTACT_DOFS.into_iter().zip(forces.into_iter().zip(&gradients)) {
             residual[row] += force;
             diagonal[(row, U)] -= gradient[0];
             diagonal[(row, V)] -= gradient[1];

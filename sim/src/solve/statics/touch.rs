@@ -1,6 +1,8 @@
 //! Contact at rest, of nodes and along elements.
 
-use crate::force::contact::{StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment};
+use crate::force::contact::{
+    BodyMotion, StaticContactForce, StaticSegmentForce, Wall, static_contact, static_segment,
+};
 use crate::math::dof::{DOFS, U, V};
 use crate::solve::model::element_values;
 
@@ -9,10 +11,10 @@ pub(super) fn contact_at(
     wall: &Wall,
     node: usize,
     displacement: &[f64; DOFS],
-    rotation_speed: f64,
+    motion: BodyMotion,
 ) -> Option<StaticContactForce> {
     let site = wall.sites()[node].as_ref()?;
-    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], rotation_speed);
+    let contact = static_contact(wall.law(), site, displacement[U], displacement[V], motion);
     (contact.penetration > 0.0).then_some(contact)
 }
 
@@ -21,8 +23,8 @@ pub(super) fn contact_along(
     wall: &Wall,
     element: usize,
     displacement: &[[f64; DOFS]],
-    rotation_speed: f64,
+    motion: BodyMotion,
 ) -> Option<StaticSegmentForce> {
     let segment = wall.segments().get(element)?;
-    static_segment(wall.law(), segment, &element_values(displacement, element), rotation_speed)
+    static_segment(wall.law(), segment, &element_values(displacement, element), motion)
 }

@@ -1,13 +1,19 @@
-//! Torque and drag of a scenario over bit depth, by motion and friction: a broomstick.
+//! Torque and drag of a scenario over bit depth, by motion and friction: a broomstick. Friction factors from measured hook loads and torques.
 
 use drillsweep_quantity::columns::*;
 use drillsweep_scenario::Scenario;
-use drillsweep_sim::solve::soft_string::{AtDepth, BroomstickRow, Margins, SoftString, SoftStringError};
+use drillsweep_sim::solve::soft_string::{
+    AtDepth, BroomstickRow, FitError, FitSettings, Margins, SoftString, SoftStringError,
+};
 use drillsweep_table::{Column, Table};
+use serde::{Deserialize, Serialize};
 
-use crate::problem::{ProblemDetails, ProblemKind};
+use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
-pub use drillsweep_sim::solve::soft_string::{DragMode, DragSettings};
+pub use drillsweep_sim::solve::soft_string::{DragMode, DragSettings, FrictionFit, MeasuredPoint};
+
+/// Largest number of measured points of one fit.
+const MOST_MEASURED_POINTS: usize = 500;
 
 /// Bit depths of a broomstick without any, from the top down.
 const USUAL_DEPTHS: u32 = 40;
@@ -82,6 +88,67 @@ pub fn table(rows: &[BroomstickRow]) -> Table {
         .with(&LARGEST_BUCKLING_RATIO_DEPTH, buckles_at)
 }
 
+/// Hook loads and torques measured at the surface, to which friction factors are fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionRequest {
+    /// Measured points, 1 to 500.
+    pub points: Vec<MeasuredPoint>,
+    /// Weight of top drive and travelling block \[N\], part of the hook loads; 0 unless given.
+    #[serde(default)]
+    pub travelling_weight: f64,
+    /// Axial speed of points of the mode `ream` \[m/s\], downhole positive.
+    #[serde(default)]
+    pub axial_speed: Option<f64>,
+    /// Standard deviation of a measured hook load \[N\], which weighs hook loads against torques; 10 kN unless given.
+    #[serde(default = "hook_load_deviation")]
+    pub hook_load_deviation: f64,
+    /// Standard deviation of a measured torque \[N m\]; 1 kN m unless given.
+    #[serde(default = "torque_deviation")]
+    pub torque_deviation: f64,
+}
+
+fn hook_load_deviation() -> f64 {
+    FitSettings::default().hook_load_deviation
+}
+
+fn torque_deviation() -> f64 {
+    FitSettings::default().torque_deviation
+}
+
+impl FrictionRequest {
+    /// Friction factors of the hole sections of a scenario that fit the measurements best, by least squares on the soft string.
+    ///
+    /// # Errors
+    /// There are too many points, a point is not on the string, a number is out of range, or the points do not determine the factors.
+    pub fn fit(&self, scenario: &Scenario) -> Result<FrictionFit, Box<ProblemDetails>> {
+        let refused = |pointer: String, detail: String| {
+            let problem = FieldProblem { pointer: Some(pointer), parameter: None, got: None, detail };
+            Box::new(ProblemDetails::invalid_request(vec![problem]))
+        };
+        if !(1..=MOST_MEASURED_POINTS).contains(&self.points.len()) {
+            let detail = format!("must be 1 to {MOST_MEASURED_POINTS} points, not {}", self.points.len());
+            return Err(refused("/points".to_owned(), detail));
+        }
+        let settings = FitSettings {
+            drag: DragSettings { travelling_weight: self.travelling_weight, axial_speed: self.axial_speed },
+            hook_load_deviation: self.hook_load_deviation,
+            torque_deviation: self.torque_deviation,
+        };
+        let string = SoftString::new(scenario)
+            .map_err(|error| ProblemDetails::new(ProblemKind::InvalidRequest, error.to_string()))?;
+        string.fit_friction(&self.points, &settings).map_err(|error| {
+            let pointer = match error {
+                FitError::Case { point, .. } => format!("/points/{point}"),
+                FitError::Number(_) | FitError::Undetermined { .. } | FitError::NotConverged => {
+                    "/points".to_owned()
+                }
+            };
+            refused(pointer, error.to_string())
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::preset;
@@ -106,5 +173,35 @@ mod tests {
         broomstick.depths = vec![201.0];
         let problem = broomstick.table(&scenario).unwrap_err();
         assert!(problem.detail.contains("201 m"), "{problem:?}");
+    }
+
+    #[test]
+    fn friction_is_fitted_to_points_of_the_string_and_others_are_refused() {
+        let scenario = preset("paper-200m").unwrap();
+        let broomstick = Broomstick {
+            modes: vec![DragMode::PickUp, DragMode::SlackOff],
+            depths: vec![120.0, 200.0],
+            friction: vec![0.27],
+            settings: DragSettings { travelling_weight: 2e5, axial_speed: None },
+        };
+        let point = |row: &BroomstickRow| serde_json::json!({ "bit_depth": row.bit_depth, "mode": row.mode.name(), "hook_load": row.hook_load });
+        let points: Vec<_> = broomstick.rows(&scenario).unwrap().iter().map(point).collect();
+        let request = |points: &[serde_json::Value]| -> FrictionRequest {
+            serde_json::from_value(serde_json::json!({ "points": points, "travelling_weight": 2e5 })).unwrap()
+        };
+        let fit = request(&points).fit(&scenario).unwrap();
+        assert!((fit.friction[0].friction - 0.27).abs() < 1e-8, "{fit:?}");
+        let refused = |points: &[serde_json::Value]| {
+            let problem = request(points).fit(&scenario).unwrap_err();
+            (problem.status, problem.errors[0].pointer.clone().unwrap())
+        };
+        assert_eq!(refused(&[]), (422, "/points".to_owned()));
+        let mut beyond = points.clone();
+        beyond[2]["bit_depth"] = 201.0.into();
+        assert_eq!(refused(&beyond), (422, "/points/2".to_owned()));
+        assert_eq!(refused(&vec![points[0].clone(); 501]), (422, "/points".to_owned()));
+        // A point without a measurement determines nothing.
+        beyond[2] = serde_json::json!({ "bit_depth": 200.0, "mode": "rotate" });
+        assert_eq!(refused(&beyond[2..3]), (422, "/points".to_owned()));
     }
 }

@@ -78,6 +78,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
         .routes(routes!(torque_drag::show))
+        .routes(routes!(torque_drag::fit))
         .routes(routes!(analysis::hydraulics))
         .routes(routes!(analysis::diagnosis))
         .routes(routes!(report::of_point))

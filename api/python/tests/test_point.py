@@ -60,6 +60,19 @@ def test_a_point_has_its_torque_and_drag(sweep: Sweep) -> None:
     assert table["hook_load"][3] > table["hook_load"][1]
 
 
+def test_friction_is_fitted_to_measured_hook_loads(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    table = point.torque_drag(modes=["pick_up", "slack_off"], depths=[120.0, 200.0], friction=[0.27])
+    measured = [
+        {"bit_depth": depth, "mode": mode, "hook_load": load}
+        for depth, mode, load in zip(table["bit_depth"], table["drag_mode"], table["hook_load"], strict=True)
+    ]
+    fit = point.fit_friction(measured)
+    assert [factor["friction"] for factor in fit["friction"]] == pytest.approx([0.27], abs=1e-6)
+    with pytest.raises(InvalidRequest, match="/points/0"):
+        point.fit_friction([{"bit_depth": 1e4, "mode": "rotate", "torque": 1.0}])
+
+
 def test_a_point_has_its_hydraulics(sweep: Sweep) -> None:
     circuit = sweep.point(1).hydraulics()
     rest = next(column for column in circuit["columns"] if column["losses"] == "concentric" and not column["rotates"])

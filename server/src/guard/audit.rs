@@ -35,7 +35,7 @@ pub(crate) fn note(
     );
 }
 
-/// True for requests that change nothing: reads, parsing of a scenario file, and dry runs.
+/// True for requests that change nothing: reads, parsing of a scenario file, fits, and dry runs.
 pub(crate) fn is_reading(method: &Method, uri: &Uri) -> bool {
     let is_dry_run = || uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
     match *method {
@@ -43,7 +43,7 @@ pub(crate) fn is_reading(method: &Method, uri: &Uri) -> bool {
         Method::POST => match uri.path() {
             "/v1/scenarios" => true,
             "/v1/sweeps" | "/v1/runs" => is_dry_run(),
-            _ => false,
+            path => path.starts_with("/v1/sweeps/") && path.ends_with("/friction"),
         },
         Method::DELETE => is_dry_run(),
         _ => false,

@@ -1,11 +1,11 @@
-//! Torque and drag of a point's string, over bit depth.
+//! Torque and drag of a point's string over bit depth, and friction factors from measurements.
 
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::axis::{Axis, Scale};
-use drillsweep_api::torque_drag::{Broomstick, DragMode, DragSettings};
+use drillsweep_api::torque_drag::{Broomstick, DragMode, DragSettings, FrictionFit, FrictionRequest};
 use drillsweep_chart::broomstick;
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::HOOK_LOAD;
@@ -15,8 +15,9 @@ use serde::{Deserialize, Deserializer};
 
 use crate::answer::error::Result;
 use crate::answer::etag::Tag;
-use crate::answer::extract::{Path, Query, value};
+use crate::answer::extract::{self, Path, Query, value};
 use crate::answer::format::{Answer, Form, PictureFormat};
+use crate::answer::json::Json;
 use crate::app::App;
 use crate::app::expansions::Work;
 use crate::guard::caller::Caller;
@@ -140,4 +141,28 @@ pub(crate) async fn show(
             Answer::of_table_or_picture(table, None, form, &name, Some(tag), draw)
         })
         .await
+}
+
+/// Friction factors from measured hook loads and torques
+///
+/// Fits the friction factor of each hole section that the points reach by least squares, with standard errors and the residual of every point, on the soft
+/// string of this point. Nothing is stored.
+#[utoipa::path(
+    post,
+    path = "/v1/sweeps/{id}/points/{n}/friction",
+    tag = "points",
+    operation_id = "fit_friction",
+    params(PointPath),
+    request_body = FrictionRequest,
+    responses((status = 200, description = "The factors", body = FrictionFit), Problems)
+)]
+pub(crate) async fn fit(
+    State(app): State<App>,
+    Extension(caller): Extension<Caller>,
+    Path(PointPath { id, n }): Path<PointPath>,
+    extract::Json(request): extract::Json<FrictionRequest>,
+) -> Result<Json<FrictionFit>> {
+    let point = point(&app, &id, n).await?;
+    let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
+    Ok(Json(place.run(move |_: &mut Work| Ok(request.fit(&point.scenario)?)).await?.0))
 }

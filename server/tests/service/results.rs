@@ -498,6 +498,25 @@ async fn torque_and_drag_of_a_point_is_a_table_or_a_broomstick() {
 }
 
 #[tokio::test]
+async fn friction_of_a_point_is_fitted_to_measurements() {
+    let bench = Bench::new().await;
+    let path = format!("/v1/sweeps/{}/points/1", bench.submit(json!({"preset": "paper-200m"})).await);
+    let torque = |found: &Value| found["columns"]["surface_torque"][0].as_f64().unwrap();
+    let found = bench.get(&format!("{path}/torque_drag?modes=rotate&depths=180&friction=0.22")).await.json();
+    let point = json!({"bit_depth": 180, "mode": "rotate", "torque": torque(&found)});
+    let fit = bench.post(&format!("{path}/friction"), json!({"points": [point]})).await.json();
+    assert!((fit["friction"][0]["friction"].as_f64().unwrap() - 0.22).abs() < 1e-6, "{fit}");
+    for (body, status, slug) in [
+        (json!({"points": []}), 422, "invalid-request"),
+        (json!({"points": [point], "hook_load_deviation": 0}), 422, "invalid-request"),
+        (json!({"points": [{"bit_depth": 300, "mode": "rotate", "torque": 1}]}), 422, "invalid-request"),
+        (json!({"points": [{"bit_depth": 100, "mode": "fly", "torque": 1}]}), 400, "malformed-body"),
+    ] {
+        bench.post(&format!("{path}/friction"), body).await.problem(status, slug);
+    }
+}
+
+#[tokio::test]
 async fn the_circuit_of_a_point_adds_up_by_every_set_of_formulas() {
     let (bench, path) = finished().await;
     let circuit = bench.get(&format!("{path}/points/1/hydraulics")).await.json();

@@ -364,6 +364,34 @@ class Point(Reported):
         settings = {"travelling_weight": travelling_weight, "axial_speed": axial_speed, "units": units}
         return self.view("torque_drag", **query, **settings)
 
+    def fit_friction(
+        self,
+        points: Iterable[Mapping[str, Any]],
+        *,
+        travelling_weight: float = 0.0,
+        axial_speed: float | None = None,
+        hook_load_deviation: float = 1e4,
+        torque_deviation: float = 1e3,
+    ) -> dict[str, Any]:
+        """Friction factors of the hole sections that fit measured hook loads and torques, with standard errors and residuals.
+
+        Args:
+            points: Measured points, each with `bit_depth` [m], `mode` (as in `torque_drag`), and `hook_load` [N], `torque`
+                [N m] or both.
+            travelling_weight: Weight of top drive and travelling block [N], part of the hook loads.
+            axial_speed: Axial speed of points of the mode `ream` [m/s], downhole positive.
+            hook_load_deviation: Standard deviation of a measured hook load [N].
+            torque_deviation: Standard deviation of a measured torque [N m].
+        """
+        body = {
+            "points": [dict(point) for point in points],
+            "travelling_weight": travelling_weight,
+            "axial_speed": axial_speed,
+            "hook_load_deviation": hook_load_deviation,
+            "torque_deviation": torque_deviation,
+        }
+        return self._client.post_json(f"{self.path}/friction", body)
+
     def view(self, name: str, **query: Any) -> Table:
         """Any table of the point; `query` holds parameters of the HTTP API, such as `units="field"`."""
         return Table.from_json(self._client.get_json(f"{self.path}/{name}", query))

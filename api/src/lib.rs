@@ -14,6 +14,7 @@ mod design;
 pub mod dry_run;
 pub mod event;
 pub mod expand;
+pub mod forced;
 pub mod judgement;
 mod listed;
 pub mod point;

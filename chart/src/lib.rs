@@ -6,6 +6,7 @@
 
 mod cost;
 mod error;
+mod forced;
 mod history;
 mod orbit;
 pub mod picture;
@@ -20,6 +21,7 @@ mod words;
 
 pub use cost::work_precision;
 pub use error::ChartError;
+pub use forced::forced_response;
 pub use history::{Bit, history, rotation, shown_of_history};
 pub use orbit::{Hole, orbit};
 pub use picture::{Drawing, PictureError, Spacing};

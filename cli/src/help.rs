@@ -50,6 +50,7 @@ const GROUPS: [Group; 4] = [
             ("plan", "drillsweep plan paper-200m --set mud.flow_rate=0.02"),
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),
+            ("response", "drillsweep response wells/volve-f12-assembly --speeds 60:180:121"),
             ("statics", "drillsweep statics paper-200m --modes pick_up,slack_off,rotate --friction 0.2,0.3"),
             (
                 "hydraulics",

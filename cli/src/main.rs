@@ -19,6 +19,7 @@ mod plan;
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 mod processor;
 mod report;
+mod response;
 mod scenario;
 mod service;
 mod simulate;
@@ -104,6 +105,8 @@ enum Command {
     Modes(modes::ModesArguments),
     /// Compute torque and drag of a soft string: hook load and surface torque over bit depth, by motion and friction.
     Statics(statics::StaticsArguments),
+    /// Compute the forced response over the speed of rotation: critical speeds by component.
+    Response(response::ResponseArguments),
     /// Compute the pressures of the mud's circuit: losses by part, equivalent circulating density and standpipe pressure, by three sets of formulas.
     Hydraulics(hydraulics::HydraulicsArguments),
     /// Print the components of a string with their weight in air, or the catalogue of pipes.
@@ -230,6 +233,7 @@ fn run() -> anyhow::Result<()> {
         Command::Cost(arguments) => cost::cost(&arguments),
         Command::Import(arguments) => import::show(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
+        Command::Response(arguments) => response::show(&arguments),
         Command::Statics(arguments) => statics::show(&arguments),
         Command::Hydraulics(arguments) => hydraulics::show(&arguments),
         Command::Tally(arguments) => tally::tally(&arguments),

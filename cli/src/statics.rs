@@ -47,9 +47,10 @@ pub(crate) struct StaticsArguments {
 
 /// Values of an axis.
 #[derive(Debug, Clone)]
-struct List(Vec<f64>);
+pub(crate) struct List(pub(crate) Vec<f64>);
 
-fn list(quantity: &str, text: &str) -> anyhow::Result<List> {
+/// Reads a list or a range of values of a quantity, in SI units or with its own.
+pub(crate) fn list(quantity: &str, text: &str) -> anyhow::Result<List> {
     let axis = parse_axis(quantity, text)?;
     let Some(count) = axis.count() else { bail!("write a list or a range from:to:count, got {text:?}") };
     Ok(List((0..count).map(|i| axis.value(i)).collect()))

@@ -96,7 +96,7 @@ fn tally_text(components: &[Component<'_>], system: UnitSystem) -> String {
         let Component { name, kind, count, measured_depth_bottom: bottom, .. } = component;
         let blades = component.blade_diameter;
         vec![
-            if name.is_empty() { kind_name(*kind) } else { name }.to_owned(),
+            if name.is_empty() { kind.name() } else { name }.to_owned(),
             count.to_string(),
             format!("{:.2}", depth.of(component.length)),
             format!("{:.2}", depth.of(*bottom)),
@@ -160,15 +160,6 @@ fn catalogue_text(system: UnitSystem) -> String {
 fn table(header: &[String], rows: &[Vec<String>]) -> String {
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     columns(&header, rows, |column| if column == 0 { Alignment::Left } else { Alignment::Right })
-}
-
-fn kind_name(kind: SectionKind) -> &'static str {
-    match kind {
-        SectionKind::Drillpipe => "drillpipe",
-        SectionKind::Collar => "collar",
-        SectionKind::Stabilizer => "stabilizer",
-        SectionKind::Bit => "bit",
-    }
 }
 
 #[cfg(test)]

@@ -132,6 +132,30 @@ quantities! {
     /// Torque of the lowest element.
     TORQUE_BIT: "torque_bit", "", TORQUE, "torque at the bit";
 
+    // Forced response, largest values of each component of the string.
+    /// Component of the string: the name of its section, or its kind with its number from the top.
+    COMPONENT: "component", "", -, "component";
+    /// Speed of rotation of the string.
+    ROTATION_SPEED_RPM: "rotation_speed_rpm", "", SPEED_OF_ROTATION, "rotation speed";
+    /// Frequency of the exciting force.
+    EXCITATION_FREQUENCY: "excitation_frequency", "", FREQUENCY, "excitation frequency";
+    /// Largest distance from the equilibrium of a node that is excited by a turning force, in the linear equations about the equilibrium.
+    FORCED_DISPLACEMENT: "forced_displacement", "", WIDTH, "forced displacement";
+    /// Measured depth of the largest forced displacement.
+    FORCED_DISPLACEMENT_DEPTH: "forced_displacement_depth", "", DEPTH, "depth of the largest forced displacement";
+    /// Lateral acceleration of the node with the largest forced displacement.
+    FORCED_ACCELERATION: "forced_acceleration", "", ACCELERATION, "forced acceleration";
+    /// Largest change of a lateral contact force by a turning force.
+    FORCED_SIDE_FORCE: "forced_side_force", "", FORCE, "forced side force";
+    /// Measured depth of the largest forced side force.
+    FORCED_SIDE_FORCE_DEPTH: "forced_side_force_depth", "", DEPTH, "depth of the largest forced side force";
+    /// Largest change of the bending moment by a turning force.
+    FORCED_BENDING_MOMENT: "forced_bending_moment", "", TORQUE, "forced bending moment";
+    /// Largest change of the bending stress at the outer diameter by a turning force.
+    FORCED_BENDING_STRESS: "forced_bending_stress", "", STRESS, "forced bending stress";
+    /// Measured depth of the largest forced bending stress.
+    FORCED_BENDING_STRESS_DEPTH: "forced_bending_stress_depth", "", DEPTH, "depth of the largest forced bending stress";
+
     // Torque and drag.
     /// Motion of the string and loads on its bit: `pick_up`, `slack_off`, `rotate`, `drill`, `slide` or `ream`.
     DRAG_MODE: "drag_mode", "", -, "motion";

@@ -3,7 +3,7 @@
 use drillsweep_api::AxisName;
 use drillsweep_quantity::columns::{INNER_DIAMETER, MEASURED_DEPTH, OUTER_DIAMETER};
 use drillsweep_quantity::{UnitSystem, units};
-use drillsweep_scenario::{HoleSection, Scenario, Section, SectionKind};
+use drillsweep_scenario::{HoleSection, Scenario, Section};
 use drillsweep_table::Table;
 use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
@@ -185,7 +185,7 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
             tbody {
                 @for (section, piece, bottom) in rows {
                     tr {
-                        td { (if section.name.is_empty() { kind(section.kind) } else { &section.name }) }
+                        td { (if section.name.is_empty() { section.kind.name() } else { &section.name }) }
                         td.n { (section.count) }
                         td.n { (bare(&units::MASS, scenario.string.mass(section))) }
                         td.n { (bare(&units::DEPTH, piece)) }
@@ -197,15 +197,6 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
                 }
             }
         }
-    }
-}
-
-fn kind(kind: SectionKind) -> &'static str {
-    match kind {
-        SectionKind::Drillpipe => "drillpipe",
-        SectionKind::Collar => "collar",
-        SectionKind::Stabilizer => "stabilizer",
-        SectionKind::Bit => "bit",
     }
 }
 

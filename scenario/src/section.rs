@@ -145,6 +145,18 @@ pub enum SectionKind {
     Bit,
 }
 
+impl SectionKind {
+    /// Name in scenarios.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drillpipe => "drillpipe",
+            Self::Collar => "collar",
+            Self::Stabilizer => "stabilizer",
+            Self::Bit => "bit",
+        }
+    }
+}
+
 /// A tool joint, one at each end of a piece of pipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]

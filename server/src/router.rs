@@ -18,8 +18,8 @@ use crate::guard::middleware;
 use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
-    analysis, cost, events, export, files, health, points, quantities, report, results, scenarios, session,
-    snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
+    analysis, cost, events, export, files, forced, health, points, quantities, report, results, scenarios,
+    session, snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, from the annotations of routes and types.
@@ -79,6 +79,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(analysis::modes))
         .routes(routes!(torque_drag::show))
         .routes(routes!(torque_drag::fit))
+        .routes(routes!(forced::show))
         .routes(routes!(analysis::hydraulics))
         .routes(routes!(analysis::diagnosis))
         .routes(routes!(report::of_point))

@@ -60,6 +60,18 @@ def test_a_point_has_its_torque_and_drag(sweep: Sweep) -> None:
     assert table["hook_load"][3] > table["hook_load"][1]
 
 
+def test_a_point_has_its_forced_response(sweep: Sweep) -> None:
+    point = sweep.point(1)
+    table = point.forced_response(speeds=[60.0, 120.0], depth=190.0, force=2000.0, per_revolution=3.0)
+    assert list(table["rotation_speed_rpm"][:2]) == [60.0, 120.0]
+    assert list(table["excitation_frequency"][:2]) == pytest.approx([3.0, 6.0])
+    # The equations are linear.
+    half = point.forced_response(speeds=[60.0, 120.0], depth=190.0, force=1000.0, per_revolution=3.0)
+    assert list(table["forced_displacement"]) == pytest.approx(list(2.0 * half["forced_displacement"]))
+    with pytest.raises(InvalidRequest, match="depth"):
+        point.forced_response(force=1.0)
+
+
 def test_friction_is_fitted_to_measured_hook_loads(sweep: Sweep) -> None:
     point = sweep.point(1)
     table = point.torque_drag(modes=["pick_up", "slack_off"], depths=[120.0, 200.0], friction=[0.27])

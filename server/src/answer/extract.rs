@@ -306,6 +306,7 @@ fn describe(expected_type: &str) -> &str {
 pub(crate) mod value {
     use std::time::Duration;
 
+    use drillsweep_api::axis::{Axis, Scale};
     use drillsweep_api::judgement::LimitChanges;
     use drillsweep_api::time_span;
     use drillsweep_quantity::{Name, UnitChoice, entry};
@@ -317,6 +318,29 @@ pub(crate) mod value {
         match text.parse() {
             Ok(number) if f64::is_finite(number) => Ok(Some(number)),
             _ => Err(D::Error::custom("must be a number")),
+        }
+    }
+
+    /// Numbers as `a,b,c` or `from:to:count`.
+    pub(crate) fn list<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let refused = || {
+            D::Error::custom(
+                "must be numbers separated by commas, or FROM:TO:COUNT with a count of 2 to 1000",
+            )
+        };
+        let number = |text: &str| {
+            text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(refused)
+        };
+        match text.split(':').collect::<Vec<_>>()[..] {
+            [list] => list.split(',').map(number).collect(),
+            [from, to, count] => {
+                let count = count.trim().parse::<u32>().ok().filter(|count| (2..=1000).contains(count));
+                let count = count.ok_or_else(refused)?;
+                let axis = Axis::Range { from: number(from)?, to: number(to)?, count, scale: Scale::Linear };
+                Ok((0..count as usize).map(|i| axis.value(i)).collect())
+            }
+            _ => Err(refused()),
         }
     }
 

@@ -5,6 +5,7 @@ pub(crate) mod cost;
 pub(crate) mod events;
 pub(crate) mod export;
 pub(crate) mod files;
+pub(crate) mod forced;
 pub(crate) mod health;
 pub(crate) mod metrics;
 pub(crate) mod points;

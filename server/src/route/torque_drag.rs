@@ -4,7 +4,6 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::axis::{Axis, Scale};
 use drillsweep_api::torque_drag::{Broomstick, DragMode, DragSettings, FrictionFit, FrictionRequest};
 use drillsweep_chart::broomstick;
 use drillsweep_quantity::UnitChoice;
@@ -36,11 +35,11 @@ pub(crate) struct TorqueDragQuery {
     modes: Vec<DragMode>,
     /// Bit depths \[m\]: numbers separated by commas, or `FROM:TO:COUNT`; absent means 40 to the end of the string. For a bit above that end pipe is
     /// missing at the top.
-    #[serde(default, deserialize_with = "numbers")]
+    #[serde(default, deserialize_with = "value::list")]
     #[param(value_type = Option<String>, example = "50:200:4")]
     depths: Vec<f64>,
     /// Friction factors of the whole hole, likewise; absent means the dynamic friction of each hole section.
-    #[serde(default, deserialize_with = "numbers")]
+    #[serde(default, deserialize_with = "value::list")]
     #[param(value_type = Option<String>, example = "0.2,0.25,0.3")]
     friction: Vec<f64>,
     /// Weight of top drive and travelling block \[N\], part of the hook load.
@@ -72,30 +71,6 @@ fn modes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<DragMode>, D:
         DragMode::named(name).ok_or_else(|| D::Error::custom(format!("must be some of {}", known())))
     };
     names.iter().map(mode).collect()
-}
-
-/// `a,b,c` or `from:to:count`.
-fn numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    let refused = || {
-        D::Error::custom("must be numbers separated by commas, or FROM:TO:COUNT with a count of 2 to 1000")
-    };
-    let number =
-        |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(refused);
-    match text.split(':').collect::<Vec<_>>()[..] {
-        [list] => list.split(',').map(number).collect(),
-        [from, to, count] => {
-            let count = count
-                .trim()
-                .parse::<u32>()
-                .ok()
-                .filter(|count| (2..=1000).contains(count))
-                .ok_or_else(refused)?;
-            let axis = Axis::Range { from: number(from)?, to: number(to)?, count, scale: Scale::Linear };
-            Ok((0..count as usize).map(|i| axis.value(i)).collect())
-        }
-        _ => Err(refused()),
-    }
 }
 
 /// Torque and drag of a point's string over bit depth

@@ -517,6 +517,28 @@ async fn friction_of_a_point_is_fitted_to_measurements() {
 }
 
 #[tokio::test]
+async fn forced_response_of_a_point_is_a_table_or_a_picture() {
+    let bench = Bench::new().await;
+    let path = format!("/v1/sweeps/{}/points/1", bench.submit(json!({"preset": "paper-200m"})).await);
+    let path = format!("{path}/forced_response");
+    let found = bench.get(&format!("{path}?speeds=60:180:3")).await.json();
+    let speeds = found["columns"]["rotation_speed_rpm"].as_array().unwrap();
+    assert_eq!(speeds[..3], [json!(60.0), json!(120.0), json!(180.0)]);
+    let picture = bench.get(&format!("{path}?speeds=60,120&format=svg&field=forced_bending_stress")).await;
+    assert!(String::from_utf8_lossy(&picture.body).contains("forced bending stress"));
+    for wrong in [
+        "speeds=0,60",
+        "speeds=40:240:501",
+        "depth=201&speeds=60",
+        "force=10",
+        "depth=100&force=-1",
+        "speeds=60&format=svg&field=nothing",
+    ] {
+        bench.get(&format!("{path}?{wrong}")).await.problem(400, "invalid-parameter");
+    }
+}
+
+#[tokio::test]
 async fn the_circuit_of_a_point_adds_up_by_every_set_of_formulas() {
     let (bench, path) = finished().await;
     let circuit = bench.get(&format!("{path}/points/1/hydraulics")).await.json();

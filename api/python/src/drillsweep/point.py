@@ -364,6 +364,32 @@ class Point(Reported):
         settings = {"travelling_weight": travelling_weight, "axial_speed": axial_speed, "units": units}
         return self.view("torque_drag", **query, **settings)
 
+    def forced_response(
+        self,
+        *,
+        speeds: Iterable[float] | None = None,
+        depth: SupportsFloat | None = None,
+        force: SupportsFloat | None = None,
+        per_revolution: float | None = None,
+        units: str | None = None,
+    ) -> Table:
+        """Forced response by component over the speed of rotation, linear about the equilibrium: a row a component and speed.
+
+        Columns: `component`, `rotation_speed_rpm`, `excitation_frequency`, `forced_displacement`, `forced_acceleration`,
+        `forced_side_force`, `forced_bending_moment`, `forced_bending_stress`, and depths. Peaks are critical speeds.
+
+        Args:
+            speeds: Speeds of rotation [rpm]; 40 to 240 in steps of 1 unless given.
+            depth: Measured depth [m] of a lateral force that turns with the string; None means the scenario's unbalance.
+            force: Its amplitude [N]; 1000 unless given.
+            per_revolution: Its cycles in a revolution, such as the number of blades; 1 unless given.
+            units: Units of the columns, as in `torque_drag`.
+        """
+        listed = None if speeds is None else ",".join(map(str, speeds))
+        in_metres = None if depth is None else in_query("depth", depth)
+        query = {"speeds": listed, "depth": in_metres, "force": force, "per_revolution": per_revolution, "units": units}
+        return self.view("forced_response", **query)
+
     def fit_friction(
         self,
         points: Iterable[Mapping[str, Any]],

@@ -102,6 +102,23 @@ impl Model {
         })
     }
 
+    /// The same string at another speed of rotation \[rpm\], on the same mesh.
+    #[must_use]
+    pub fn turning_at(&self, rotation_speed_rpm: f64) -> Self {
+        let mut turning = self.clone();
+        turning.scenario.operation.rotation_speed_rpm = rotation_speed_rpm;
+        turning.effects = active_effects(&turning.scenario);
+        turning.drive = Drive::new(&turning.scenario.operation);
+        turning.rotation_speed = turning.drive.nominal_speed();
+        turning.forces = nodal_forces(&ForceContext {
+            scenario: &turning.scenario,
+            effects: &turning.effects,
+            nodes: &turning.mesh.nodes,
+            drive: &turning.drive,
+        });
+        turning
+    }
+
     fn wall(
         scenario: &Scenario,
         effects: &ActiveEffects,

@@ -9,6 +9,7 @@
 mod accuracy;
 mod arnoldi;
 mod count;
+mod forced;
 mod mode;
 mod pencil;
 mod receptance;
@@ -17,6 +18,10 @@ mod stability;
 mod torsion;
 mod walk;
 
+pub use forced::{
+    ComponentResponse, ElementResponse, Excitation, ForcedError, MOST_SPEEDS, NodeResponse, SpeedResponse,
+    by_component, forced_response,
+};
 pub use mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, Modes, ModesError};
 pub use pencil::Pencil;
 pub use receptance::{Receptance, Response};

@@ -31,12 +31,15 @@ impl<'a> Receptance<'a> {
     pub fn to_unbalance(&self, model: &Model) -> Response {
         let mut load = self.no_load();
         for force in unbalance::forces(&model.mesh.nodes, &model.drive) {
-            let (sine, cosine) = force.phase.sin_cos();
-            // A cos(w t + phase) along u, A sin(w t + phase) along v.
-            let along_u = Complex::new(cosine, sine) * force.amplitude;
-            load[force.node][U] += along_u;
-            load[force.node][V] += along_u * Complex::new(0.0, -1.0);
+            add_turning(&mut load[force.node], force.amplitude, force.phase);
         }
+        self.to(load)
+    }
+
+    /// Response to a lateral force at a node, of an amplitude \[N\], that turns clockwise with the frequency.
+    pub(super) fn to_turning_force(&self, node: usize, amplitude: f64) -> Response {
+        let mut load = self.no_load();
+        add_turning(&mut load[node], amplitude, 0.0);
         self.to(load)
     }
 
@@ -67,6 +70,14 @@ impl<'a> Receptance<'a> {
         self.factor.solve_in_place(load.as_flattened_mut());
         load
     }
+}
+
+/// Adds A cos(w t + phase) along u and A sin(w t + phase) along v.
+fn add_turning(load: &mut [Complex<f64>; DOFS], amplitude: f64, phase: f64) {
+    let (sine, cosine) = phase.sin_cos();
+    let along_u = Complex::new(cosine, sine) * amplitude;
+    load[U] += along_u;
+    load[V] += along_u * Complex::new(0.0, -1.0);
 }
 
 #[cfg(test)]

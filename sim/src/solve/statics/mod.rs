@@ -141,6 +141,15 @@ impl Equilibrium {
         })
     }
 
+    /// The same displacements with the flow past the string of another model of it, such as one that turns faster.
+    ///
+    /// # Errors
+    /// The flow past a section has no solution.
+    pub(crate) fn with_flows_of(&self, model: &Model) -> Result<Self, StaticsError> {
+        let flows = Sections::new(model)?.flows(&eccentricities(model, &self.displacement))?;
+        Ok(Self { flows, ..self.clone() })
+    }
+
     /// The equilibrium on `wall` under the drag of the mud at the string's position. Equilibrium and drag are computed from each other in turn,
     /// beginning with displacements and eccentricities; `solve` moves displacements to the equilibrium under a load.
     fn in_passes(

@@ -1,9 +1,10 @@
 //! Tables of texts: CSV with any usual delimiter and encoding, and Excel.
 
-use std::io::Cursor;
+use std::io::{self, Cursor, Read as _};
 
-use calamine::{Data, Reader as _, Xlsx};
+use calamine::{DataRef, Reader as _, Xlsx};
 use thiserror::Error;
+use zip::ZipArchive;
 
 use crate::las;
 use crate::rows::MOST_BYTES;
@@ -11,6 +12,13 @@ use crate::rows::MOST_BYTES;
 /// Largest number of rows and of columns.
 const MOST_ROWS: usize = 50_000;
 const MOST_COLUMNS: usize = 200;
+
+/// Largest number of cells, and of bytes of their texts together.
+const MOST_CELLS: usize = 1_000_000;
+const MOST_TEXT: usize = 2 * MOST_BYTES;
+
+/// Largest size of a workbook's files together, uncompressed \[bytes\].
+const MOST_INFLATED: u64 = 64 << 20;
 
 /// Lines by which the delimiter is chosen.
 const SAMPLE_LINES: usize = 60;
@@ -28,7 +36,9 @@ pub struct Grid {
 #[derive(Debug, Error)]
 pub enum GridError {
     /// The file is too large.
-    #[error("the file has more than {MOST_BYTES} bytes, {MOST_ROWS} rows or {MOST_COLUMNS} columns")]
+    #[error(
+        "the file has more than {MOST_BYTES} bytes ({MOST_INFLATED} uncompressed), {MOST_ROWS} rows, {MOST_COLUMNS} columns or {MOST_CELLS} cells"
+    )]
     Size,
     /// The file has no text.
     #[error("the file is empty")]
@@ -36,6 +46,12 @@ pub enum GridError {
     /// An Excel file that cannot be read.
     #[error("the Excel file cannot be read: {0}")]
     Excel(#[from] calamine::XlsxError),
+    /// A workbook whose archive cannot be read.
+    #[error("the Excel file cannot be read: {0}")]
+    Archive(#[from] zip::result::ZipError),
+    /// A file of a workbook that cannot be uncompressed.
+    #[error("the Excel file cannot be read: {0}")]
+    Inflate(#[from] io::Error),
     /// The workbook has no such sheet.
     #[error("the workbook has no sheet {wanted}; it has {present}")]
     NoSheet {
@@ -82,6 +98,7 @@ impl Grid {
     }
 
     fn of_workbook(bytes: &[u8], sheet: Option<&str>) -> Result<Self, GridError> {
+        require_small_archive(bytes)?;
         let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes))?;
         let names = workbook.sheet_names();
         let name = match sheet {
@@ -91,23 +108,33 @@ impl Grid {
                 .ok_or_else(|| GridError::NoSheet { wanted: wanted.to_owned(), present: names.join(", ") })?,
             None => names.first().ok_or(GridError::Empty)?,
         };
-        let range = workbook.worksheet_range(&name.clone())?;
-        let (height, width) = range.get_size();
-        if height > MOST_ROWS || width > MOST_COLUMNS {
-            return Err(GridError::Size);
-        }
-        // Rows and columns are those of the sheet, also if its first ones are empty.
-        let (above, left) = range.start().map_or((0, 0), |(row, column)| (row as usize, column as usize));
-        if above > MOST_ROWS || left > MOST_COLUMNS {
-            return Err(GridError::Size);
-        }
-        let mut rows = vec![Vec::new(); above];
-        for row in range.rows() {
-            let cells = row.iter().map(|cell| match cell {
-                Data::Empty => String::new(),
-                cell => cell.to_string().trim().to_owned(),
-            });
-            rows.push(std::iter::repeat_n(String::new(), left).chain(cells).collect());
+        // Cell by cell: a range would have all cells between the first and the last one.
+        let mut cells = workbook.worksheet_cells_reader(name)?;
+        let mut rows: Vec<Vec<String>> = Vec::new();
+        let mut budget = Budget::default();
+        while let Some(cell) = cells.next_cell()? {
+            let text = match cell.get_value() {
+                DataRef::Empty => continue,
+                DataRef::String(text) | DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => {
+                    text.trim().to_owned()
+                }
+                DataRef::SharedString(text) => text.trim().to_owned(),
+                DataRef::Int(value) => value.to_string(),
+                DataRef::Float(value) => value.to_string(),
+                DataRef::Bool(value) => value.to_string(),
+                DataRef::DateTime(value) => value.as_f64().to_string(),
+                DataRef::Error(error) => error.to_string(),
+            };
+            let (row, column) = cell.get_position();
+            let (row, column) = (row as usize, column as usize);
+            if row >= MOST_ROWS || column >= MOST_COLUMNS {
+                return Err(GridError::Size);
+            }
+            rows.resize(rows.len().max(row + 1), Vec::new());
+            let before = rows[row].len();
+            budget.take((column + 1).saturating_sub(before), text.len())?;
+            rows[row].resize(before.max(column + 1), String::new());
+            rows[row][column] = text;
         }
         // Numbers of cells have a point; texts may have a comma.
         Ok(Self { rows, has_decimal_comma: false })
@@ -115,9 +142,13 @@ impl Grid {
 
     fn of_text(text: &str) -> Result<Self, GridError> {
         let Some(delimiter) = delimiter(text) else {
-            let rows =
-                text.lines().map(|line| line.split_whitespace().map(str::to_owned).collect()).collect();
-            return Ok(Self { has_decimal_comma: !text.contains('.'), rows });
+            let mut budget = Budget::default();
+            let row = |line: &str| {
+                let cells: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+                budget.take(cells.len(), line.len()).map(|()| cells)
+            };
+            let rows = text.lines().take(MOST_ROWS + 1).map(row).collect::<Result<Vec<_>, _>>()?;
+            return Ok(Self { has_decimal_comma: has_decimal_comma(&rows), rows });
         };
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter)
@@ -126,6 +157,7 @@ impl Grid {
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let mut rows: Vec<Vec<String>> = Vec::new();
+        let mut budget = Budget::default();
         let (mut line, mut counted) = (0, 0);
         for record in reader.records() {
             let record = record?;
@@ -138,11 +170,43 @@ impl Grid {
             if line >= MOST_ROWS {
                 return Err(GridError::Size);
             }
+            budget.take(record.len(), record.as_slice().len())?;
             rows.resize(rows.len().max(line), Vec::new());
             rows.push(record.iter().map(str::to_owned).collect());
         }
-        Ok(Self { rows, has_decimal_comma: delimiter != b',' && has_decimal_comma(text) })
+        Ok(Self { has_decimal_comma: delimiter != b',' && has_decimal_comma(&rows), rows })
     }
+}
+
+/// Cells and bytes of their texts that may still follow.
+struct Budget {
+    cells: usize,
+    bytes: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { cells: MOST_CELLS, bytes: MOST_TEXT }
+    }
+}
+
+impl Budget {
+    fn take(&mut self, cells: usize, bytes: usize) -> Result<(), GridError> {
+        self.cells = self.cells.checked_sub(cells).ok_or(GridError::Size)?;
+        self.bytes = self.bytes.checked_sub(bytes).ok_or(GridError::Size)?;
+        Ok(())
+    }
+}
+
+/// Refuses an archive whose files are large uncompressed, before any of them is held in memory; their headers may state less.
+fn require_small_archive(bytes: &[u8]) -> Result<(), GridError> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes))?;
+    let mut left = MOST_INFLATED;
+    for index in 0..archive.len() {
+        let size = io::copy(&mut archive.by_index(index)?.take(left + 1), &mut io::sink())?;
+        left = left.checked_sub(size).ok_or(GridError::Size)?;
+    }
+    Ok(())
 }
 
 /// Text of bytes in UTF-8, UTF-16 with a byte order mark, or else Latin-1, which files of older programs have for degrees.
@@ -165,27 +229,94 @@ fn decoded(bytes: &[u8]) -> String {
 /// The delimiter that divides most lines into columns; `None` if blanks do.
 fn delimiter(text: &str) -> Option<u8> {
     let lines = || text.lines().filter(|line| !line.trim().is_empty()).take(SAMPLE_LINES);
-    let divided = |delimiter: char| lines().filter(|line| line.matches(delimiter).count() >= 2).count();
+    let divided = |delimiter: char, least: usize| {
+        lines().filter(|line| line.matches(delimiter).count() >= least).count()
+    };
     // A semicolon or tab is never part of a number; a comma may be its decimal sign.
-    let counts = [('\t', divided('\t')), (';', divided(';')), (',', divided(','))];
+    let counts = [('\t', divided('\t', 1)), (';', divided(';', 1)), (',', divided(',', 2))];
     let (delimiter, most) = counts.into_iter().max_by_key(|(_, count)| *count)?;
     (2 * most > lines().count()).then_some(delimiter as u8)
 }
 
-/// True if commas stand within numbers, and no points do.
-fn has_decimal_comma(text: &str) -> bool {
-    let between_digits = |sign: char| {
-        text.match_indices(sign).take(1000).any(|(at, _)| {
-            let is_digit = |sign: Option<char>| sign.is_some_and(|sign| sign.is_ascii_digit());
-            is_digit(text[..at].chars().next_back()) && is_digit(text[at + 1..].chars().next())
-        })
+/// True if the last sign of numbers is a comma, and of none a point; texts between them, such as dates, do not count.
+fn has_decimal_comma(rows: &[Vec<String>]) -> bool {
+    let is_number = |cell: &&String| {
+        cell.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b',' | b'.' | b'-' | b'+' | b' '))
+            && (cell.contains(',') || cell.matches('.').count() <= 1)
     };
-    between_digits(',') && !between_digits('.')
+    let numbers = rows.iter().flatten().filter(is_number);
+    let signs = numbers.filter_map(|cell| cell.rfind([',', '.']).map(|at| cell.as_bytes()[at]));
+    let mut signs = signs.take(1000).peekable();
+    signs.peek().is_some() && signs.all(|sign| sign == b',')
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
+    use std::fmt::Write as _;
+    use std::io::Write as _;
+
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
     use super::*;
+
+    /// A workbook of sheets with rows of texts, or numbers if they are some.
+    pub(crate) fn workbook(sheets: &[(&str, &[&[&str]])]) -> Vec<u8> {
+        let (mut list, mut relations) = (String::new(), String::new());
+        let mut files = Vec::new();
+        for (at, (name, rows)) in sheets.iter().enumerate() {
+            write!(list, "<sheet name=\"{name}\" sheetId=\"{0}\" r:id=\"r{0}\"/>", at + 1).unwrap();
+            write!(relations, "<Relationship Id=\"r{0}\" Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet\" Target=\"worksheets/sheet{0}.xml\"/>", at + 1).unwrap();
+            let mut data = String::new();
+            for (row, cells) in rows.iter().enumerate() {
+                write!(data, "<row r=\"{}\">", row + 1).unwrap();
+                for (column, text) in cells.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
+                    let place = format!("{}{}", crate::rows::column_name(column), row + 1);
+                    match text.parse::<f64>() {
+                        Ok(value) => write!(data, "<c r=\"{place}\"><v>{value}</v></c>").unwrap(),
+                        Err(_) => {
+                            write!(data, "<c r=\"{place}\" t=\"inlineStr\"><is><t>{text}</t></is></c>")
+                                .unwrap();
+                        }
+                    }
+                }
+                data += "</row>";
+            }
+            files.push((format!("xl/worksheets/sheet{}.xml", at + 1), format!("<worksheet xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\"><sheetData>{data}</sheetData></worksheet>")));
+        }
+        files.push(("xl/workbook.xml".to_owned(), format!("<workbook xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\" xmlns:r=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships\"><sheets>{list}</sheets></workbook>")));
+        files.push(("xl/_rels/workbook.xml.rels".to_owned(), format!("<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">{relations}</Relationships>")));
+        archive(&files)
+    }
+
+    fn archive(files: &[(String, String)]) -> Vec<u8> {
+        let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, text) in files {
+            writer.start_file(name.as_str(), SimpleFileOptions::default()).unwrap();
+            writer.write_all(text.as_bytes()).unwrap();
+        }
+        writer.finish().unwrap().into_inner()
+    }
+
+    #[test]
+    fn workbooks_that_grow_are_refused_before_they_are_held() {
+        let inflated = archive(&[("xl/workbook.xml".to_owned(), " ".repeat(MOST_INFLATED as usize + 1))]);
+        assert!(inflated.len() < MOST_BYTES);
+        assert!(matches!(Grid::read(&inflated, None), Err(GridError::Size)));
+        // Two cells in the corners of a sheet have 17 thousand million cells between them.
+        let corners = "<worksheet xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\"><sheetData><row r=\"1\"><c r=\"A1\"><v>1</v></c></row><row r=\"1048576\"><c r=\"XFD1048576\"><v>1</v></c></row></sheetData></worksheet>";
+        let mut files: Vec<(String, String)> = Vec::new();
+        let bytes = workbook(&[("Sheet", &[&["text"]])]);
+        let mut archived = ZipArchive::new(Cursor::new(&bytes)).unwrap();
+        for at in 0..archived.len() {
+            let mut file = archived.by_index(at).unwrap();
+            let (name, mut text) = (file.name().unwrap().into_owned(), String::new());
+            file.read_to_string(&mut text).unwrap();
+            let is_sheet = name.starts_with("xl/worksheets");
+            files.push((name, if is_sheet { corners.to_owned() } else { text }));
+        }
+        assert!(matches!(Grid::read(&archive(&files), None), Err(GridError::Size)));
+    }
 
     #[test]
     fn delimiters_and_decimal_signs_are_recognised() {
@@ -194,6 +325,8 @@ mod tests {
             ("MD;INC;AZI\n0;0;0\n10,5;1;2\n", ["10,5", "1", "2"], true),
             ("MD\tINC\tAZI\n0\t0\t0\n10.5\t1\t2\n", ["10.5", "1", "2"], false),
             ("MD INC AZI\n0 0 0\n10.5 1 2\n", ["10.5", "1", "2"], false),
+            ("MD;INC;AZI\n3.4.2020;of 9.5 in;0\n1.010,5;1;2\n", ["1.010,5", "1", "2"], true),
+            ("MD;INC;AZI\n0;0;0\n1,010.5;1,5;2\n", ["1,010.5", "1,5", "2"], false),
         ] {
             let grid = Grid::read(text.as_bytes(), None).unwrap();
             assert_eq!(
@@ -224,7 +357,9 @@ mod tests {
         assert!(matches!(Grid::read(b" \n \n", None), Err(GridError::Empty)));
         assert!(matches!(Grid::read("1,2,3\n".repeat(MOST_ROWS + 1).as_bytes(), None), Err(GridError::Size)));
         assert!(matches!(Grid::read(&vec![b','; 1000], None), Err(GridError::Size | GridError::Empty)));
-        assert!(matches!(Grid::read(b"PK\x03\x04nonsense", None), Err(GridError::Excel(_))));
+        assert!(matches!(Grid::read(b"PK\x03\x04nonsense", None), Err(GridError::Archive(_))));
+        let wide = format!("{}\n", "a ".repeat(MOST_COLUMNS - 1)).repeat(MOST_CELLS / (MOST_COLUMNS - 1) + 1);
+        assert!(matches!(Grid::read(wide.as_bytes(), None), Err(GridError::Size)));
         assert!(matches!(Grid::read(&[0xd0, 0xcf, 0x11, 0xe0, 0], None), Err(GridError::OldExcel)));
     }
 }

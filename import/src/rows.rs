@@ -1,5 +1,7 @@
 //! Rows of files with their meaning and their problems.
 
+use std::fmt;
+
 use drillsweep_scenario::SurveyStation;
 use serde::Serialize;
 
@@ -29,7 +31,7 @@ pub struct UnderstoodColumn {
 pub struct CellProblem {
     /// Row, from 1, as editors and spreadsheets count.
     pub row: usize,
-    /// Column, as spreadsheets name it; absent if the whole row is meant.
+    /// Column, as spreadsheets name it (`A`), or element of a WITSML file; absent if the whole row is meant.
     pub column: Option<String>,
     /// Text of the cell, shortened.
     pub text: String,
@@ -38,10 +40,24 @@ pub struct CellProblem {
 }
 
 impl CellProblem {
-    pub(crate) fn new(row: usize, column: Option<usize>, text: &str, problem: impl Into<String>) -> Self {
+    /// A problem of a row, from 0, in a column or in the whole of it.
+    pub(crate) fn new(row: usize, column: Option<&str>, text: &str, problem: impl Into<String>) -> Self {
         const LONGEST: usize = 40;
         let text = text.chars().take(LONGEST).collect();
-        Self { row: row + 1, column: column.map(column_name), text, problem: problem.into() }
+        Self { row: row + 1, column: column.map(str::to_owned), text, problem: problem.into() }
+    }
+}
+
+impl fmt::Display for CellProblem {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "row {}", self.row)?;
+        if let Some(column) = &self.column {
+            write!(formatter, ", column {column}")?;
+        }
+        if !self.text.is_empty() {
+            write!(formatter, ", `{}`", self.text)?;
+        }
+        write!(formatter, ": {}", self.problem)
     }
 }
 

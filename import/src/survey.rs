@@ -6,18 +6,20 @@ use drillsweep_quantity::columns::MEASURED_DEPTH;
 use drillsweep_quantity::entry;
 use drillsweep_scenario::SurveyStation;
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::grid::{Grid, GridError};
+use crate::error::ImportError;
+use crate::grid::Grid;
 use crate::headings::{Found, Sought, find};
+use crate::measure::spelled;
 use crate::number::number;
-use crate::rows::{CellProblem, MOST_PROBLEMS, MOST_STATIONS, Row, Rows, UnderstoodColumn, column_name};
-use crate::witsml::{self, WitsmlError};
+use crate::rows::{CellProblem, MOST_PROBLEMS, MOST_STATIONS, Row, Rows, UnderstoodColumn};
+use crate::witsml;
 
 /// Columns of a survey.
 const COLUMNS: [Sought; 3] = [
     Sought {
         quantity: "measured_depth",
+        is_required: true,
         headings: &[
             "md",
             "dept",
@@ -36,6 +38,7 @@ const COLUMNS: [Sought; 3] = [
     },
     Sought {
         quantity: "inclination",
+        is_required: true,
         headings: &[
             "inc",
             "incl",
@@ -51,6 +54,7 @@ const COLUMNS: [Sought; 3] = [
     },
     Sought {
         quantity: "azimuth",
+        is_required: true,
         headings: &[
             "azi",
             "az",
@@ -92,61 +96,12 @@ pub struct Survey {
     pub problems: Vec<CellProblem>,
 }
 
-/// Reason why a file is no survey.
-#[derive(Debug, Error)]
-pub enum SurveyError {
-    /// It is no table.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// It is no WITSML trajectory.
-    #[error("the XML is no WITSML trajectory: {0}")]
-    Witsml(#[from] WitsmlError),
-    /// No row has the headings of a survey.
-    #[error(
-        "no row has headings of measured depth, inclination and azimuth, such as `MD (m)`, `Inc (deg)`, `Azi (deg)`"
-    )]
-    NoHeadings,
-    /// The unit of measured depth is not known.
-    #[error("column {column} (`{heading}`) has no unit: give that of measured depth, m or ft")]
-    NoDepthUnit {
-        /// Column, as spreadsheets name it.
-        column: String,
-        /// Its heading.
-        heading: String,
-    },
-    /// A unit does not fit.
-    #[error("column {column} (`{heading}`) must have the unit of {quantity}: {valid}")]
-    Unit {
-        /// Column, as spreadsheets name it.
-        column: String,
-        /// Its heading.
-        heading: String,
-        /// Quantity of the column.
-        quantity: &'static str,
-        /// Valid units, in words.
-        valid: String,
-    },
-    /// The file has fewer than two usable stations.
-    #[error("the file has {count} usable stations; a survey needs two{}", .first.as_ref().map_or_else(String::new, |first| format!(" (row {}: {})", first.row, first.problem)))]
-    TooFew {
-        /// Usable stations.
-        count: usize,
-        /// First problem.
-        first: Option<CellProblem>,
-    },
-    /// The file has too many stations.
-    #[error("the file has more than {MOST_STATIONS} stations")]
-    TooMany,
-}
-
 /// The survey of a file: CSV, Excel, LAS, or a WITSML 1.4.1.1 or 2.0 trajectory.
 ///
 /// # Errors
 /// The file cannot be read, has no headings of a survey, no unit of depth, or fewer than two stations.
-pub fn survey(bytes: &[u8], options: SurveyOptions<'_>) -> Result<Survey, SurveyError> {
-    let start =
-        bytes.iter().position(|byte| !byte.is_ascii_whitespace() && !matches!(byte, 0xef | 0xbb | 0xbf));
-    let (rows, columns, problems) = if start.is_some_and(|start| bytes[start] == b'<') {
+pub fn survey(bytes: &[u8], options: SurveyOptions<'_>) -> Result<Survey, ImportError> {
+    let (rows, columns, problems) = if witsml::is_xml(bytes) {
         witsml::trajectory(bytes)?
     } else {
         of_grid(&Grid::read(bytes, options.sheet)?, options.depth_unit)?
@@ -154,8 +109,11 @@ pub fn survey(bytes: &[u8], options: SurveyOptions<'_>) -> Result<Survey, Survey
     checked(rows, columns, problems)
 }
 
-fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, SurveyError> {
-    let (_, first, found) = find(grid, &COLUMNS).ok_or(SurveyError::NoHeadings)?;
+fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, ImportError> {
+    const WANTED: &str =
+        "measured depth, inclination and azimuth, such as `MD (m)`, `Inc (deg)`, `Azi (deg)`";
+    let (found, first) = find(grid, &COLUMNS.each_ref()).ok_or(ImportError::NoHeadings(WANTED))?;
+    let found: Vec<Found> = found.into_iter().flatten().collect();
     let mut columns = Vec::new();
     let mut scales = Vec::new();
     for (sought, found) in COLUMNS.iter().zip(&found) {
@@ -167,7 +125,7 @@ fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, SurveyError> {
         scales.push(scale);
         columns.push(UnderstoodColumn {
             quantity: sought.quantity,
-            column: column_name(found.column),
+            column: found.name.clone(),
             heading: found.heading.clone(),
             unit,
             is_assumed,
@@ -188,7 +146,7 @@ fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, SurveyError> {
                 None => {
                     is_complete = false;
                     let problem = if text.is_empty() { "the cell is empty" } else { "no number" };
-                    problems.push(CellProblem::new(row, Some(found[order].column), text, problem));
+                    problems.push(CellProblem::new(row, Some(&found[order].name), text, problem));
                 }
             }
         }
@@ -201,35 +159,35 @@ fn of_grid(grid: &Grid, depth_unit: Option<&str>) -> Result<Rows, SurveyError> {
 }
 
 /// Unit of a column of depths, true if it is an assumption, and its size \[m\].
-fn depth_scale(found: &Found, given: Option<&str>) -> Result<(String, bool, f64), SurveyError> {
-    let place = || (column_name(found.column), found.heading.clone());
+fn depth_scale(found: &Found, given: Option<&str>) -> Result<(String, bool, f64), ImportError> {
+    let place = || (found.name.clone(), found.heading.clone());
     let Some(unit) = found.unit.as_deref().or(given) else {
         let (column, heading) = place();
-        return Err(SurveyError::NoDepthUnit { column, heading });
-    };
-    // Spellings of files: `metres`, `FT`, `F` of LAS.
-    let spelled = match unit.to_ascii_lowercase().trim_end_matches('.') {
-        "metre" | "metres" | "meter" | "meters" | "mtr" => "m".to_owned(),
-        "f" | "usft" | "ftus" => "ft".to_owned(),
-        other => other.to_owned(),
+        return Err(ImportError::NoUnit {
+            column,
+            heading,
+            quantity: "measured depth",
+            valid: "m or ft",
+            option: "depth_unit",
+        });
     };
     let units = MEASURED_DEPTH.units.expect("a depth has units");
-    let scale = entry::read(&format!("1 {spelled}"), units).map_err(|error| {
+    let scale = entry::read(&format!("1 {}", spelled(unit)), units).map_err(|error| {
         let (column, heading) = place();
-        SurveyError::Unit { column, heading, quantity: "measured_depth", valid: error.to_string() }
+        ImportError::Unit { column, heading, quantity: "measured_depth", valid: error.to_string() }
     })?;
     Ok((unit.to_owned(), found.unit.is_none(), scale))
 }
 
 /// Unit of a column of angles, true if it is an assumption, and its size \[deg\].
-fn angle_scale(quantity: &'static str, found: &Found) -> Result<(String, bool, f64), SurveyError> {
+fn angle_scale(quantity: &'static str, found: &Found) -> Result<(String, bool, f64), ImportError> {
     let Some(unit) = found.unit.as_deref() else { return Ok(("deg".to_owned(), true, 1.0)) };
     let scale = match unit.to_ascii_lowercase().trim_end_matches('.') {
         "deg" | "degs" | "degree" | "degrees" | "dega" | "°" | "º" => 1.0,
         "rad" | "radian" | "radians" => 180.0 / PI,
         _ => {
-            return Err(SurveyError::Unit {
-                column: column_name(found.column),
+            return Err(ImportError::Unit {
+                column: found.name.clone(),
                 heading: found.heading.clone(),
                 quantity,
                 valid: "deg or rad".to_owned(),
@@ -244,7 +202,7 @@ fn checked(
     rows: Vec<Row>,
     columns: Vec<UnderstoodColumn>,
     mut problems: Vec<CellProblem>,
-) -> Result<Survey, SurveyError> {
+) -> Result<Survey, ImportError> {
     let mut remarks = Vec::new();
     let mut rows = rows;
     if rows.len() > 1 && rows.windows(2).all(|pair| pair[1].1.measured_depth < pair[0].1.measured_depth) {
@@ -280,13 +238,13 @@ fn checked(
         station = north;
         turned += usize::from(is_turned);
         if stations.len() == MOST_STATIONS {
-            return Err(SurveyError::TooMany);
+            return Err(ImportError::TooMany { most: MOST_STATIONS, rows: "stations" });
         }
         stations.push(station);
     }
     problems.sort_by_key(|problem| problem.row);
     if stations.len() < 2 {
-        return Err(SurveyError::TooFew { count: stations.len(), first: problems.into_iter().next() });
+        return Err(ImportError::TooFew { count: stations.len(), needed: 2, rows: "stations", problems });
     }
     if turned > 0 {
         remarks.push(format!("azimuths taken modulo 360 deg: {turned}"));
@@ -375,11 +333,11 @@ mod tests {
     fn a_depth_without_unit_is_refused_unless_it_is_given() {
         let text = b"MD,Inc,Azi\n0,0,0\n1000,1,2\n";
         let refused = survey(text, SurveyOptions::default());
-        assert!(matches!(refused, Err(SurveyError::NoDepthUnit { column, .. }) if column == "A"));
+        assert!(matches!(refused, Err(ImportError::NoUnit { column, .. }) if column == "A"));
         let given = survey(text, SurveyOptions { depth_unit: Some("ft"), sheet: None }).unwrap();
         assert_eq!((given.stations[1].measured_depth, given.columns[0].is_assumed), (304.8, true));
         let wrong = survey(text, SurveyOptions { depth_unit: Some("psi"), sheet: None });
-        assert!(matches!(wrong, Err(SurveyError::Unit { quantity: "measured_depth", .. })));
+        assert!(matches!(wrong, Err(ImportError::Unit { quantity: "measured_depth", .. })));
     }
 
     #[test]
@@ -411,7 +369,7 @@ mod tests {
         let many: String = (0..20_000).map(|row| format!("{row},0,0\n")).collect();
         assert!(matches!(
             survey(format!("{header}{many}").as_bytes(), SurveyOptions::default()),
-            Err(SurveyError::TooMany)
+            Err(ImportError::TooMany { .. })
         ));
         for text in [
             "",

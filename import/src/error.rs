@@ -55,7 +55,7 @@ pub enum ImportError {
         valid: String,
     },
     /// The file has too few usable rows.
-    #[error("the file has {count} usable {rows}; {needed} are needed{}", first(.problems))]
+    #[error("the file has {count} usable {rows}; the least number is {needed}{}", first(.problems))]
     TooFew {
         /// Usable rows.
         count: usize,

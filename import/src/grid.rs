@@ -18,7 +18,7 @@ const MOST_CELLS: usize = 1_000_000;
 const MOST_TEXT: usize = 2 * MOST_BYTES;
 
 /// Largest size of a workbook's files together, uncompressed \[bytes\].
-const MOST_INFLATED: u64 = 64 << 20;
+const MOST_INFLATED: u64 = 32 << 20;
 
 /// Lines by which the delimiter is chosen.
 const SAMPLE_LINES: usize = 60;
@@ -83,9 +83,12 @@ impl Grid {
             return Err(GridError::OldExcel);
         } else {
             let text = decoded(bytes);
-            match las::rows(&text) {
-                Some(rows) => Self { rows, has_decimal_comma: false },
-                None => Self::of_text(&text)?,
+            if !las::is_las(&text) {
+                Self::of_text(&text)?
+            } else if text.split_whitespace().nth(MOST_CELLS).is_some() {
+                return Err(GridError::Size);
+            } else {
+                Self { rows: las::rows(&text), has_decimal_comma: false }
             }
         };
         if grid.rows.len() > MOST_ROWS || grid.rows.iter().any(|row| row.len() > MOST_COLUMNS) {

@@ -1,16 +1,18 @@
 //! Log ASCII Standard 2.0 (Canadian Well Logging Society, 1992): curves with units in `~C`, numbers in `~A`.
 
-/// Rows of cells of a LAS file: a row of curves with their units above the data, at the rows that they have in the file; `None` if the text is no
-/// such file.
-pub(crate) fn rows(text: &str) -> Option<Vec<Vec<String>>> {
-    let is_section = |line: &str, letter: char| {
-        let mut signs = line.trim_start().chars();
-        signs.next() == Some('~') && signs.next().is_some_and(|sign| sign.eq_ignore_ascii_case(&letter))
-    };
-    let first = text.lines().find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
-    if !is_section(first, 'V') {
-        return None;
-    }
+/// True if a text is a LAS file: its first line that is no comment begins the section of the version.
+pub(crate) fn is_las(text: &str) -> bool {
+    let first = text.lines().find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+    first.is_some_and(|line| is_section(line, 'V'))
+}
+
+fn is_section(line: &str, letter: char) -> bool {
+    let mut signs = line.trim_start().chars();
+    signs.next() == Some('~') && signs.next().is_some_and(|sign| sign.eq_ignore_ascii_case(&letter))
+}
+
+/// Rows of cells of a LAS file: a row of curves with their units above the data, at the rows that they have in the file.
+pub(crate) fn rows(text: &str) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let mut curves = Vec::new();
     let (mut in_curves, mut in_data) = (false, false);
@@ -30,7 +32,7 @@ pub(crate) fn rows(text: &str) -> Option<Vec<Vec<String>>> {
         }
         rows.push(row);
     }
-    Some(rows)
+    rows
 }
 
 /// Heading of a curve: `DEPT.M : depth` is `DEPT (M)`.

@@ -23,7 +23,7 @@ pub use error::ImportError;
 pub use grid::{Grid, GridError};
 pub use hole::{HoleImport, HoleOptions, hole};
 pub use measure::AssumedUnits;
-pub use mud::{MudError, MudFit, MudReport, Reading};
+pub use mud::{MudAnswer, MudError, MudFit, MudReport, MudRequest, Reading};
 pub use rows::{CellProblem, MOST_BYTES, MOST_PROBLEMS, UnderstoodColumn};
 pub use survey::{Survey, SurveyOptions, survey};
 pub use tally::{Tally, TallyLengths, TallyOptions, TallyOrder, UnderstoodComponent, tally};

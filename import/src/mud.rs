@@ -4,7 +4,7 @@
 //! stress of 0.5107 Pa (1.0667 lbf/100 ft2) per degree of the dial (API RP 13D; ISO 10414-1). The power law of the wall's
 //! shear rate is taken as the fluid's, as the field does.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Shear rate per rotor speed \[1/s per rev/min\].
@@ -24,7 +24,8 @@ const FLOW_INDICES: [f64; 2] = [0.1, 1.5];
 const INDEX_STEP: f64 = 1e-10;
 
 /// A reading of the viscometer.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Reading {
     /// Speed of the rotor \[rev/min\].
     pub rpm: f64,
@@ -63,6 +64,54 @@ pub struct MudReport {
     pub yield_point: Option<f64>,
 }
 
+/// Readings of a viscometer, or else plastic viscosity and yield point.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MudRequest {
+    /// Readings at 2 to 100 different speeds, in place of the other members.
+    #[serde(default)]
+    pub readings: Vec<Reading>,
+    /// Plastic viscosity PV \[Pa s\].
+    #[serde(default)]
+    pub plastic_viscosity: Option<f64>,
+    /// Yield point YP \[Pa\].
+    #[serde(default)]
+    pub yield_point: Option<f64>,
+    /// Low-shear yield point LSYP \[Pa\]; absent means 0.
+    #[serde(default)]
+    pub low_shear_yield_point: Option<f64>,
+}
+
+/// Rheologies of readings, or the law of plastic viscosity and yield point.
+#[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
+#[serde(untagged)]
+pub enum MudAnswer {
+    /// Of readings.
+    Report(Box<MudReport>),
+    /// Of plastic viscosity and yield point.
+    Law(MudFit),
+}
+
+impl MudRequest {
+    /// The rheologies.
+    ///
+    /// # Errors
+    /// Neither or both forms are given, or they give no mud.
+    pub fn answer(&self) -> Result<MudAnswer, MudError> {
+        let [viscosity, point, low] = [self.plastic_viscosity, self.yield_point, self.low_shear_yield_point];
+        match (viscosity, point, self.readings.is_empty()) {
+            (Some(viscosity), Some(point), true) => {
+                let [point, low] = [point, low.unwrap_or(0.0)].map(|stress| stress / POUND_A_HUNDRED);
+                by_rp_13d(1e3 * viscosity, point, low).map(MudAnswer::Law).ok_or(MudError::NoLaw)
+            }
+            (None, None, false) if low.is_none() => {
+                fit(&self.readings).map(|report| MudAnswer::Report(Box::new(report)))
+            }
+            _ => Err(MudError::Form),
+        }
+    }
+}
+
 /// Reason why readings give no mud.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum MudError {
@@ -74,6 +123,12 @@ pub enum MudError {
     /// A speed or reading out of range.
     #[error("reading {0}: speed and dial must be above 0, at most 1,000 rev/min and 1,000 deg")]
     Range(usize),
+    /// Neither or both of readings and plastic viscosity with yield point.
+    #[error("a mud needs either `readings`, or `plastic_viscosity` with `yield_point`")]
+    Form,
+    /// No yield power law has the plastic viscosity and the yield points.
+    #[error("no yield power law has these values: PV and PV + YP - LSYP must be above 0")]
+    NoLaw,
     /// Stresses that do not grow with the shear rate.
     #[error("the readings do not grow with the speed: no viscous fluid has them")]
     NotViscous,

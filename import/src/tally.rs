@@ -241,7 +241,7 @@ fn order(rows: &[Row], given: Option<TallyOrder>) -> Result<TallyOrder, ImportEr
     let is_bit = |row: Option<&Row>| row.is_some_and(|row| row.kind == SectionKind::Bit);
     match (given, is_bit(rows.first()), is_bit(rows.last())) {
         (Some(order), ..) => Ok(order),
-        (None, true, false) => Ok(TallyOrder::FromBit),
+        (None, true, is_last) if !is_last || rows.len() == 1 => Ok(TallyOrder::FromBit),
         (None, false, true) => Ok(TallyOrder::FromTop),
         // A component with sequence 1 entered the hole first (WITSML 1.4.1.1, cs_tubularComponent).
         (None, false, false) if rows.iter().all(|row| row.sequence.is_some()) => Ok(TallyOrder::FromBit),

@@ -14,7 +14,9 @@ use crate::rows::{CellProblem, MOST_BYTES, MOST_PROBLEMS, MOST_STATIONS, Rows, U
 #[derive(Debug, thiserror::Error)]
 pub enum WitsmlError {
     /// The file is too large.
-    #[error("the file has more than {MOST_BYTES} bytes or {MOST_STATIONS} stations or components")]
+    #[error(
+        "the file has more than {MOST_BYTES} bytes, {MOST_STATIONS} stations or components, {MOST_ATTRIBUTES} attributes of an element or {MOST_NAMESPACES} namespaces"
+    )]
     Size,
     /// It is no text.
     #[error("the text is not UTF-8: {0}")]
@@ -29,6 +31,10 @@ pub enum WitsmlError {
 
 /// Elements of an XML document that are read at most.
 const MOST_ELEMENTS: u32 = 1_000_000;
+
+/// Attributes of an element, and declarations of namespaces, that are read at most: the parser compares each with all others.
+const MOST_ATTRIBUTES: usize = 100;
+const MOST_NAMESPACES: usize = 1000;
 
 /// Units of measure of WITSML with their size in metres or degrees.
 const LENGTHS: [(&str, f64); 5] =
@@ -171,6 +177,12 @@ fn document(bytes: &[u8]) -> Result<Document<'_>, WitsmlError> {
         return Err(WitsmlError::Size);
     }
     let text = std::str::from_utf8(bytes)?;
+    let quotes = |part: &str| part.bytes().filter(|byte| matches!(byte, b'"' | b'\'')).count();
+    if text.split('<').any(|part| quotes(part) > 2 * MOST_ATTRIBUTES)
+        || text.matches("xmlns").count() > MOST_NAMESPACES
+    {
+        return Err(WitsmlError::Size);
+    }
     // Without document types there are no entities that grow.
     let options =
         ParsingOptions { allow_dtd: false, nodes_limit: MOST_ELEMENTS, ..ParsingOptions::default() };

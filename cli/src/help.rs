@@ -87,6 +87,8 @@ const NESTED: [Group; 2] = [
         "import",
         &[
             ("survey", "drillsweep import survey survey.xlsx > survey.toml"),
+            ("tally", "drillsweep import tally bha.xlsx --sheet BHA > string.toml"),
+            ("hole", "drillsweep import hole casings.csv > hole.toml"),
             ("mud", "drillsweep import mud --readings 600=62,300=38,200=29,100=19,6=7,3=6"),
         ],
     ),

@@ -99,7 +99,7 @@ enum Command {
     Plan(plan::PlanArguments),
     /// Measure the cost of accuracy: methods, steps and meshes relative to a converged run.
     Cost(cost::CostArguments),
-    /// Read a survey from a file of another program, or fit a mud to viscometer readings, and print that part of a scenario.
+    /// Read survey, tally or hole from a file of another program, or fit a mud to viscometer readings, and print that part of a scenario.
     Import(import::ImportArguments),
     /// Compute the modes of vibration about the equilibrium: frequencies, growth, direction of whirl.
     Modes(modes::ModesArguments),

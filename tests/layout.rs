@@ -45,6 +45,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "drillsweep-api",
             "drillsweep-chart",
+            "drillsweep-import",
             "drillsweep-quantity",
             "drillsweep-report",
             "drillsweep-store",

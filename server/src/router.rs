@@ -18,8 +18,8 @@ use crate::guard::middleware;
 use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
-    analysis, cost, events, export, files, forced, health, points, quantities, report, results, scenarios,
-    session, snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
+    analysis, cost, events, export, files, forced, health, imports, points, quantities, report, results,
+    scenarios,    session, snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, from the annotations of routes and types.
@@ -86,6 +86,10 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(cost::show))
         .routes(routes!(scenarios::list, scenarios::read))
         .routes(routes!(scenarios::show))
+        .routes(routes!(imports::survey))
+        .routes(routes!(imports::tally))
+        .routes(routes!(imports::hole))
+        .routes(routes!(imports::mud))
         .routes(routes!(quantities::list))
         .routes(routes!(status::workers))
         .routes(routes!(status::queue))

@@ -38,11 +38,20 @@ pub(crate) struct Body {
     _memory: BodyMemory,
 }
 
+/// A body of any media type, of at most `MOST` bytes.
+pub(crate) struct File<const MOST: usize> {
+    /// The bytes.
+    pub(crate) bytes: Bytes,
+    /// Its memory, held until the work on it has ended.
+    _memory: BodyMemory,
+}
+
 impl<T: DeserializeOwned> FromRequest<App> for Json<T> {
     type Rejection = Error;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Error> {
-        read_json(&receive(request, app, SMALL_BODY).await?.bytes).map(Json)
+        require_json(&request)?;
+        read_json(&receive(request, app, SMALL_BODY).await?.0).map(Json)
     }
 }
 
@@ -50,12 +59,22 @@ impl FromRequest<App> for Body {
     type Rejection = Error;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Error> {
-        receive(request, app, LIMITS.body_bytes).await
+        require_json(&request)?;
+        let (bytes, memory) = receive(request, app, LIMITS.body_bytes).await?;
+        Ok(Self { bytes, _memory: memory })
     }
 }
 
-/// Receives a JSON body of at most `most` bytes; its memory grows as it arrives.
-async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error> {
+impl<const MOST: usize> FromRequest<App> for File<MOST> {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Error> {
+        let (bytes, memory) = receive(request, app, MOST).await?;
+        Ok(Self { bytes, _memory: memory })
+    }
+}
+
+fn require_json(request: &Request) -> Result<(), Error> {
     let media_type = request.headers().get(header::CONTENT_TYPE);
     let media_type = media_type.and_then(|value| value.to_str().ok()).unwrap_or_default();
     let essence = media_type.split(';').next().unwrap_or_default().trim();
@@ -64,6 +83,11 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
         let detail = format!("the body must have Content-Type: application/json, not {found}");
         return Err(Error::new(ProblemKind::UnsupportedMediaType, detail));
     }
+    Ok(())
+}
+
+/// Receives a body of at most `most` bytes; its memory grows as it arrives.
+async fn receive(request: Request, app: &App, most: usize) -> Result<(Bytes, BodyMemory), Error> {
     let encoding = request.headers().get(header::CONTENT_ENCODING).map(HeaderValue::as_bytes);
     if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(b"identity")) {
         let detail = "the body must have no Content-Encoding";
@@ -101,7 +125,7 @@ async fn receive(request: Request, app: &App, most: usize) -> Result<Body, Error
             return Err(Error::new(ProblemKind::RequestTimeout, detail));
         }
     }
-    Ok(Body { bytes: bytes.freeze(), _memory: memory })
+    Ok((bytes.freeze(), memory))
 }
 
 /// Bound on the memory for parsing a body of `bytes` \[bytes\]: a value of a change takes 80 bytes, an object around it about 500, a listed

@@ -35,13 +35,14 @@ pub(crate) fn note(
     );
 }
 
-/// True for requests that change nothing: reads, parsing of a scenario file, fits, and dry runs.
+/// True for requests that change nothing: reads, parsing of a scenario's file or of a part of one, fits, and dry runs.
 pub(crate) fn is_reading(method: &Method, uri: &Uri) -> bool {
     let is_dry_run = || uri.query().is_some_and(|query| query.split('&').any(|pair| pair == "dry_run=true"));
     match *method {
         Method::GET | Method::HEAD | Method::OPTIONS => true,
         Method::POST => match uri.path() {
             "/v1/scenarios" => true,
+            path if path.starts_with("/v1/imports/") => true,
             "/v1/sweeps" | "/v1/runs" => is_dry_run(),
             path => path.starts_with("/v1/sweeps/") && path.ends_with("/friction"),
         },
@@ -58,6 +59,7 @@ mod tests {
     fn dry_runs_are_those_of_routes_that_have_them() {
         let is = |method: Method, target: &str| is_reading(&method, &target.parse().expect("a target"));
         assert!(is(Method::GET, "/v1/sweeps") && is(Method::POST, "/v1/scenarios"));
+        assert!(is(Method::POST, "/v1/imports/tally?order=from_bit"));
         assert!(
             is(Method::POST, "/v1/sweeps?cache=only&dry_run=true")
                 && is(Method::POST, "/v1/runs?dry_run=true")

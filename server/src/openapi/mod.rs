@@ -75,6 +75,7 @@ fn bound_members(document: &mut Value) {
         (name = "sweeps", description = "Submit sweeps and single runs, and follow them"),
         (name = "points", description = "The points of a sweep and their results"),
         (name = "scenarios", description = "Preset scenarios"),
+        (name = "imports", description = "Parts of a scenario from files of other programs"),
         (name = "service", description = "The service itself"),
     )
 )]

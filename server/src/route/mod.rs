@@ -7,6 +7,7 @@ pub(crate) mod export;
 pub(crate) mod files;
 pub(crate) mod forced;
 pub(crate) mod health;
+pub(crate) mod imports;
 pub(crate) mod metrics;
 pub(crate) mod points;
 pub(crate) mod quantities;

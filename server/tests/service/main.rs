@@ -10,6 +10,7 @@ mod errors;
 mod events;
 mod files;
 mod follow;
+mod imports;
 mod large;
 mod limits;
 mod log;

@@ -9,7 +9,7 @@ import uuid
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import quote
 
 import httpx
@@ -21,11 +21,20 @@ from drillsweep.problem import PROBLEM_PREFIX, ConnectionError, Problem, Unsuppo
 from drillsweep.quantity import Quantity, read_quantities
 from drillsweep.request import Accuracy, Cache, Outputs, request_to_json
 from drillsweep.sweep import Plan, Signs, Sweep
-from drillsweep.values import Value, in_query
+from drillsweep.values import Value, in_query, to_json
 
 DEFAULT_SERVER = "http://127.0.0.1:7340"
 API_VERSION = "1"
 """The version of the API that this client speaks, the `info.version` of the OpenAPI document."""
+
+TallyOrder = Literal["from_bit", "from_top"]
+"""Directions in which a tally lists its components."""
+
+TallyLengths = Literal["each", "total"]
+"""Meanings of a length next to a number of joints."""
+
+UnitSystem = Literal["si", "field"]
+"""Systems of units of columns that have none."""
 
 _LOG = logging.getLogger("drillsweep")
 
@@ -216,6 +225,100 @@ class Client:
         """A preset scenario in full."""
         return dict(self.get_json(f"/v1/scenarios/{_segment(name)}")["scenario"])
 
+    def import_survey(
+        self, source: str | Path | bytes, *, depth_unit: str | None = None, sheet: str | None = None
+    ) -> dict[str, Any]:
+        """Reads a directional survey of another program: CSV, Excel, LAS or a WITSML trajectory.
+
+        The answer has `stations` for `well.survey`, the meaning of each column (`columns`), `remarks`, and the cells
+        that were left out (`problems`), by row and column. The service stores nothing.
+
+        Args:
+            source: File, or its bytes.
+            depth_unit: Unit of measured depth if the file has none, such as `"ft"`.
+            sheet: Sheet of a workbook; the first one unless given.
+
+        Raises:
+            Problem: The service cannot read it, or it leaves open what an argument decides; the text names it.
+        """
+        return self._import("survey", source, {"depth_unit": depth_unit, "sheet": sheet})
+
+    def import_tally(
+        self,
+        source: str | Path | bytes,
+        *,
+        order: TallyOrder | None = None,
+        lengths: TallyLengths | None = None,
+        assumed_units: UnitSystem | None = None,
+        sheet: str | None = None,
+    ) -> dict[str, Any]:
+        """Reads the components of a string of another program: CSV, Excel or a WITSML tubular.
+
+        The answer has `sections` from the top down for `string.sections`, their `length` [m] and `mass` in air [kg],
+        the meaning of each row (`components`) and column (`columns`), `remarks` and `problems`. The service stores
+        nothing.
+
+        Args:
+            source: File, or its bytes.
+            order: Direction of the list; the bit decides unless given.
+            lengths: Meaning of a length next to a number of joints; cumulative lengths decide unless given.
+            assumed_units: Units of columns that have none: `"si"` (m, mm, kg/m) or `"field"` (ft, in, lb/ft).
+            sheet: Sheet of a workbook, the first one unless given; or name of a WITSML tubular.
+
+        Raises:
+            Problem: The service cannot read it, or it leaves open what an argument decides; the text names it.
+        """
+        query = {"order": order, "lengths": lengths, "assumed_units": assumed_units, "sheet": sheet}
+        return self._import("tally", source, query)
+
+    def import_hole(
+        self, source: str | Path | bytes, *, assumed_units: UnitSystem | None = None, sheet: str | None = None
+    ) -> dict[str, Any]:
+        """Reads casings and open hole of another program: CSV, Excel or a WITSML geometry of a wellbore.
+
+        The answer has `sections` for `well.section`, `columns`, `remarks` and `problems`. The service stores nothing.
+
+        Args:
+            source: File, or its bytes.
+            assumed_units: Units of columns that have none: `"si"` (m, mm) or `"field"` (ft, in).
+            sheet: Sheet of a workbook, the first one unless given; or name of a WITSML geometry.
+
+        Raises:
+            Problem: The service cannot read it, or it leaves open what an argument decides; the text names it.
+        """
+        return self._import("hole", source, {"assumed_units": assumed_units, "sheet": sheet})
+
+    def import_mud(
+        self,
+        readings: Mapping[float, float] | None = None,
+        *,
+        plastic_viscosity: float | None = None,
+        yield_point: float | None = None,
+        low_shear_yield_point: float | None = None,
+    ) -> dict[str, Any]:
+        """Fits a yield power law to viscometer readings, or to plastic viscosity and yield point.
+
+        The answer to readings has `least_squares` with `yield_stress`, `consistency` and `flow_index` for `mud`, and
+        the laws of other conventions; that to viscosity and yield point has these three itself.
+
+        Args:
+            readings: Readings of the dial [deg], by speed [rev/min].
+            plastic_viscosity: Plastic viscosity [Pa s], in place of readings.
+            yield_point: Yield point [Pa].
+            low_shear_yield_point: Low-shear yield point [Pa]; 0 unless given.
+
+        Raises:
+            InvalidRequest: No viscous fluid has these values, or both forms are given.
+        """
+        body = {
+            "readings": None if readings is None else [{"rpm": rpm, "dial": dial} for rpm, dial in readings.items()],
+            "plastic_viscosity": plastic_viscosity,
+            "yield_point": yield_point,
+            "low_shear_yield_point": low_shear_yield_point,
+        }
+        given = {name: value for name, value in body.items() if value is not None}
+        return self.post_json("/v1/imports/mud", to_json(given))
+
     def quantities(self) -> dict[str, Quantity]:
         """The service's vocabulary, by name; `drillsweep.quantity` has the client's own, without a request."""
         return read_quantities(self.get_json("/v1/quantities"))
@@ -348,6 +451,11 @@ class Client:
         """Closes the connections."""
         self.close()
 
+    def _import(self, part: str, source: str | Path | bytes, query: Mapping[str, Any]) -> dict[str, Any]:
+        content = source if isinstance(source, bytes) else Path(source).read_bytes()
+        headers = {"content-type": "application/octet-stream"}
+        return dict(self._send("POST", f"/v1/imports/{part}", query=query, content=content, headers=headers).json())
+
     def _submit(self, path: str, body: Mapping[str, Any], key: str | None, cache: Cache | None) -> Sweep:
         # With a key every submission can be sent again when the answer got lost.
         headers = {"idempotency-key": key or str(uuid.uuid4())}
@@ -362,13 +470,15 @@ class Client:
         *,
         query: Mapping[str, Any] | None = None,
         body: Mapping[str, Any] | None = None,
+        content: bytes | None = None,
         headers: Mapping[str, str] | None = None,
         read_timeout: float | None = None,
     ) -> httpx.Response:
         parameters = {name: in_query(name, value) for name, value in (query or {}).items() if value is not None}
         self._handshake()
         timeout = httpx.Timeout(self._timeout, read=max(read_timeout or 0.0, self._timeout))
-        response = self._answer(method, path, params=parameters, json=body, headers=headers, timeout=timeout)
+        sent = {"json": body} if content is None else {"content": content}
+        response = self._answer(method, path, params=parameters, **sent, headers=headers, timeout=timeout)
         if not response.is_success:
             raise _problem(response)
         return response

@@ -86,21 +86,34 @@ export function send(method, path, body, signal) {
 }
 
 /**
+ * Sends a file for an answer in JSON.
+ * @param {string} path
+ * @param {Record<string, any>} query
+ * @param {File} file
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<any>}
+ */
+export function sendFile(path, query, file, signal) {
+  return ask("POST", address(path, query), file, signal);
+}
+
+/**
  * @param {string} method
  * @param {string} url
- * @param {any} body
+ * @param {any} body a file, or anything as JSON
  * @param {AbortSignal} [signal]
  * @param {(answer: Response) => Promise<any>} [read] the answer that is no problem
  */
 async function ask(method, url, body, signal, read = (answer) => answer.json()) {
   /** @type {Record<string, string>} */
   const headers = { Accept: "application/json" };
-  if (body !== undefined) headers["Content-Type"] = "application/json";
+  const isFile = body instanceof Blob;
+  if (body !== undefined) headers["Content-Type"] = isFile ? "application/octet-stream" : "application/json";
   let answer;
   try {
-    const text = body === undefined ? undefined : JSON.stringify(body);
-    const early = method === "GET" ? preload.sent(url) : preload.posted(url, text);
-    answer = await (early ?? fetch(url, { method, headers, body: text, signal }));
+    const sent = body === undefined || isFile ? body : JSON.stringify(body);
+    const early = method === "GET" ? preload.sent(url) : isFile ? null : preload.posted(url, sent);
+    answer = await (early ?? fetch(url, { method, headers, body: sent, signal }));
   } catch (error) {
     if (signal?.aborted) throw error;
     lose();

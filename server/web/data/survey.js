@@ -9,6 +9,21 @@ const METRES = { m: 1, ft: 0.3048 };
 export class NoSurvey extends Error {}
 
 /**
+ * Stations as a text that `readSurvey` reads.
+ * @param {Station[]} stations
+ * @param {string} unit of the depths
+ */
+export function surveyText(stations, unit) {
+  // To a ten-thousandth of a unit, as below.
+  const depth = (/** @type {number} */ metres) => Number((metres / METRES[unit]).toFixed(4));
+  return stations
+    .map((station) =>
+      [depth(station.measured_depth), station.inclination_deg, station.azimuth_deg].join("\t"),
+    )
+    .join("\n");
+}
+
+/**
  * The columns of a line, with points as decimal signs. Where tabs, semicolons or spaces part the columns, a comma within one is a decimal sign.
  * @param {string} line
  */

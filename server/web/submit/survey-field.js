@@ -1,9 +1,10 @@
 // A field of the form for a survey of the well.
 
 import { unitSystem } from "../data/settings.js";
-import { NoSurvey, readSurvey } from "../data/survey.js";
+import { NoSurvey, readSurvey, surveyText } from "../data/survey.js";
 import { number, say as sayValue } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
+import { importFile } from "./import-file.js";
 
 /** @typedef {import("../data/survey.js").Station} Station */
 
@@ -11,9 +12,10 @@ import { choice, fill, h } from "../ui/dom.js";
  * A field for a survey.
  * @param {Station[] | undefined} given in a request that the form begins with
  * @param {() => void} changed
+ * @param {AbortSignal} signal of the view
  * @returns {{element: HTMLElement, read: () => Station[] | undefined, say: () => void}} `say` sums the survey up again, in the units that now hold
  */
-export function surveyField(given, changed) {
+export function surveyField(given, changed, signal) {
   // Stations of a request are in metres.
   let unit = !given && unitSystem() === "field" ? "ft" : "m";
   const summary = h("p", { class: "small soft", "aria-live": "polite" });
@@ -23,9 +25,7 @@ export function surveyField(given, changed) {
     spellcheck: "false",
     "aria-label": "Survey: measured depth, inclination and azimuth of each station",
     placeholder: "0\t0\t0\n500\t12.5\t40",
-    value: (given ?? [])
-      .map((station) => [station.measured_depth, station.inclination_deg, station.azimuth_deg].join("\t"))
-      .join("\n"),
+    value: surveyText(given ?? [], unit),
     oninput: () => {
       say();
       changed();
@@ -62,6 +62,12 @@ export function surveyField(given, changed) {
       changed();
     },
   );
+  const taken = (/** @type {{stations: Station[]}} */ { stations }) => {
+    text.value = surveyText(stations, unit);
+    say();
+    changed();
+  };
+  const file = importFile("survey", {}, () => ({ depth_unit: unit }), taken, signal);
   const element = h(
     "details",
     { open: Boolean(given), "data-pointer": "/set/well.survey" },
@@ -69,11 +75,12 @@ export function surveyField(given, changed) {
     h(
       "p",
       { class: "small soft" },
-      "Paste the columns measured depth, inclination [°] and azimuth [°]: they take the place of the scenario's survey.",
+      "Paste the columns measured depth, inclination [°] and azimuth [°], or choose a file: they take the place of the scenario's survey.",
     ),
     units,
     text,
     summary,
+    file,
   );
   return { element, read, say };
 }

@@ -7,6 +7,7 @@ import { partsInWords } from "../draw/string-track.js";
 import { h } from "../ui/dom.js";
 import { numberBox, wordBox } from "./fields.js";
 import { readersNumber } from "./entries.js";
+import { importFile } from "./import-file.js";
 import { memberOf } from "./members.js";
 import { tablePart } from "./table.js";
 import { read } from "./values.js";
@@ -118,14 +119,72 @@ export function materialName(material) {
   return MATERIALS.find(([, one]) => isSame(one))?.[0] ?? "own";
 }
 
+/** Choices that a file of a tally may leave open. @type {import("./import-file.js").Choices} */
+const CHOICES = {
+  order: {
+    label: "Listed",
+    options: [
+      ["", "as the bit shows"],
+      ["from_bit", "from the bit up"],
+      ["from_top", "from the top down"],
+    ],
+  },
+  lengths: {
+    label: "Lengths of several joints",
+    options: [
+      ["", "as cumulative lengths show"],
+      ["each", "of each joint"],
+      ["total", "of all joints"],
+    ],
+  },
+  assumed_units: {
+    label: "Columns without a unit",
+    options: [
+      ["", "are refused"],
+      ["si", "are in m, mm, kg/m"],
+      ["field", "are in ft, in, lb/ft"],
+    ],
+  },
+};
+
+/**
+ * The fields, drawn anew by each call, with a chooser of a file that stays.
+ * @param {AbortSignal} signal of the view
+ * @returns {(edited: import("./fields.js").Edited) => HTMLElement[]}
+ */
+export function stringPart(signal) {
+  /** @type {import("./fields.js").Edited} */
+  let shown;
+  const taken = (/** @type {{sections: any[]}} */ { sections }) =>
+    shown.set(SECTIONS, sections.map(withoutNulls));
+  const file = importFile("tally", CHOICES, () => ({}), taken, signal);
+  return (edited) => {
+    shown = edited;
+    return stringFields(edited, file);
+  };
+}
+
+/** @param {any} value @returns {any} */
+function withoutNulls(value) {
+  if (value === null || typeof value !== "object") return value;
+  const members = Object.entries(value).filter(([, member]) => member !== null);
+  return Object.fromEntries(members.map(([name, member]) => [name, withoutNulls(member)]));
+}
+
 /**
  * @param {import("./fields.js").Edited} edited
+ * @param {HTMLElement} file
  * @returns {HTMLElement[]}
  */
-export function stringFields(edited) {
+function stringFields(edited, file) {
   /** @type {any[]} */
   const sections = edited.value(SECTIONS) ?? [];
-  const below = [...ownMaterials(sections, edited), lengthLine(sections, edited), picturePart(sections)];
+  const below = [
+    ...ownMaterials(sections, edited),
+    lengthLine(sections, edited),
+    picturePart(sections),
+    file,
+  ];
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
     texts: (/** @type {any[]} */ rows) =>

@@ -22,7 +22,7 @@ import { isSection } from "./scenario-form.js";
 import { submitLines } from "./snippets.js";
 import { Source } from "./source.js";
 import { surveyField } from "./survey-field.js";
-import { isTally, STRING, stringFields } from "./tally.js";
+import { isTally, STRING, stringPart } from "./tally.js";
 import { changeOf, object, span, Unreadable, written } from "./values.js";
 
 /** Characters of a request that a link may hold; a longer one is held next to it. */
@@ -160,11 +160,11 @@ class NewSweep {
     );
     this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isElsewhere);
     this.#parts = [
-      new FieldsPart("String: tally, gauges, unbalance", STRING, this.#changes, stringFields, signal),
+      new FieldsPart("String: tally, gauges, unbalance", STRING, this.#changes, stringPart(signal), signal),
       new FieldsPart("Mesh", [MESH], this.#changes, meshFields, signal),
     ];
     this.#recording = new Recording(this.#changes, signal);
-    this.#survey = surveyField(start.set?.[SURVEY], changed);
+    this.#survey = surveyField(start.set?.[SURVEY], changed, signal);
     this.preview = new Preview(signal);
     const on = {
       changed,

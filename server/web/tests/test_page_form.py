@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -154,6 +155,26 @@ def test_sections_are_changed_inserted_and_removed(opened: Opens) -> None:
     page.get_by_role("button", name="Take back tally").click()
     until(page, lambda: changes(page) == {})
     expect(page.get_by_label("Outer diameter of section 3", exact=True)).to_have_value("0.159")
+
+
+@pytest.mark.usefixtures("refused")
+def test_a_tally_of_a_file_fills_its_table_and_shows_what_it_left_out(opened: Opens, tmp_path: Path) -> None:
+    file = tmp_path / "tally.csv"
+    file.write_text("Item;Length;OD (in);ID (in)\nBit;0,5;6;2\nCollar;9;6;x\nCollar;199,5;6,5;2,5\n")
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    tally = page.get_by_role("group", name="Tally")
+    page.get_by_label("Columns without a unit").select_option("si")
+    page.get_by_label("File of a tally").set_input_files(file)
+    expect(tally.locator("tbody tr")).to_have_count(2)
+    expect(tally).to_contain_text("Row 3, column D, “x”: no number")
+    expect(tally).to_contain_text("length: B, “Length”, in m, which the file does not give")
+
+    def sections() -> list[dict[str, Any]]:
+        return list(changes(page).get("string.sections", []))
+
+    until(page, lambda: [section["length"] for section in sections()] == [199.5, 0.5])
+    assert [section["outer_diameter"] for section in sections()] == [0.1651, 0.1524]
 
 
 @pytest.mark.usefixtures("refused")

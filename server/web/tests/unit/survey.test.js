@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { NoSurvey, readSurvey } from "../../data/survey.js";
+import { NoSurvey, readSurvey, surveyText } from "../../data/survey.js";
 
 /** Stations from rows of depth, inclination and azimuth. */
 function stations(...rows) {
@@ -44,4 +44,9 @@ test("a line within the stations that is none is named", () => {
 
 test("a text without stations is no survey", () => {
   for (const text of ["", "MD Incl Azi", "1 2"]) assert.throws(() => readSurvey(text, "m"), NoSurvey);
+});
+
+test("stations are written as they are read, in either unit", () => {
+  for (const unit of ["m", "ft"]) assert.deepEqual(readSurvey(surveyText(EXPECTED, unit), unit), EXPECTED);
+  assert.equal(surveyText(stations([304.8, 2.5, 359]), "ft"), "1000\t2.5\t359");
 });

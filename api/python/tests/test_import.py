@@ -28,7 +28,7 @@ def test_a_tally_and_a_hole_are_parts_of_a_scenario(client: Client, tmp_path: Pa
     scenario = client.scenario("paper-200m")
     scenario["string"] |= {"sections": tally["sections"], "gauges": [], "unbalance": []}
     scenario["well"]["section"] = hole["sections"]
-    scenario["recording"]["nodes"] = []
+    scenario["recording"]["nodes"] = [{"node": 2}]
     plan = client.plan(scenario=scenario)
     assert plan.total == 1
 

@@ -52,6 +52,7 @@ const GROUPS: [Group; 4] = [
             ("modes", "drillsweep modes paper-200m --to 5"),
             ("response", "drillsweep response wells/volve-f12-assembly --speeds 60:180:121"),
             ("statics", "drillsweep statics paper-200m --modes pick_up,slack_off,rotate --friction 0.2,0.3"),
+            ("friction", "drillsweep friction wells/volve-f12 --measured hook-loads.csv"),
             (
                 "hydraulics",
                 "drillsweep hydraulics wells/volve-f12 --units field --set hydraulics.surface_case=4",

@@ -141,15 +141,17 @@ fn show_hole(arguments: &HoleArguments) -> anyhow::Result<()> {
 }
 
 /// A choice by its name.
-fn choice<T: DeserializeOwned>(name: String) -> Result<T, serde_json::Error> {
+pub(crate) fn choice<T: DeserializeOwned>(name: String) -> Result<T, serde_json::Error> {
     serde_json::from_value(name.into())
 }
 
-fn name_of(file: &Path) -> String {
+/// Name of a file in messages.
+pub(crate) fn name_of(file: &Path) -> String {
     file.display().to_string()
 }
 
-fn bytes_of(file: &Path) -> anyhow::Result<Vec<u8>> {
+/// Contents of a file of bounded size.
+pub(crate) fn bytes_of(file: &Path) -> anyhow::Result<Vec<u8>> {
     let failed = || format!("cannot read {}", file.display());
     let size = std::fs::metadata(file).with_context(failed)?.len();
     if size > MOST_BYTES as u64 {
@@ -234,7 +236,7 @@ fn hole_text(read: &HoleImport) -> anyhow::Result<String> {
 }
 
 /// Columns, remarks and problems of a file as comments.
-fn comments(
+pub(crate) fn comments(
     columns: &[UnderstoodColumn],
     remarks: &[String],
     problems: &[CellProblem],

@@ -8,6 +8,7 @@ mod data;
 mod download;
 mod exposure;
 mod fetch;
+mod friction;
 mod gc;
 mod health;
 mod help;
@@ -105,6 +106,8 @@ enum Command {
     Modes(modes::ModesArguments),
     /// Compute torque and drag of a soft string: hook load and surface torque over bit depth, by motion and friction.
     Statics(statics::StaticsArguments),
+    /// Fit the friction factors of the hole sections to measured hook loads and torques.
+    Friction(friction::FrictionArguments),
     /// Compute the forced response over the speed of rotation: critical speeds by component.
     Response(response::ResponseArguments),
     /// Compute the pressures of the mud's circuit: losses by part, equivalent circulating density and standpipe pressure, by three sets of formulas.
@@ -235,6 +238,7 @@ fn run() -> anyhow::Result<()> {
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Response(arguments) => response::show(&arguments),
         Command::Statics(arguments) => statics::show(&arguments),
+        Command::Friction(arguments) => friction::show(&arguments),
         Command::Hydraulics(arguments) => hydraulics::show(&arguments),
         Command::Tally(arguments) => tally::tally(&arguments),
         Command::Gc(arguments) => gc::gc(&arguments),

@@ -1,7 +1,7 @@
 //! Numbers of a column with the unit of their cell, of their heading, or one that is assumed.
 
 use drillsweep_quantity::entry;
-use drillsweep_quantity::units::{DEPTH, FORCE, MASS, MASS_PER_LENGTH, STIFFNESS, Units, WIDTH};
+use drillsweep_quantity::units::{DEPTH, FORCE, MASS, MASS_PER_LENGTH, STIFFNESS, TORQUE, Units, WIDTH};
 use serde::Deserialize;
 
 use crate::error::ImportError;
@@ -13,9 +13,9 @@ use crate::rows::UnderstoodColumn;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AssumedUnits {
-    /// Lengths in metres, diameters in millimetres, weights in kilograms a metre.
+    /// Lengths in metres, diameters in millimetres, weights in kilograms a metre, forces in kilonewtons, torques in kilonewton metres.
     Si,
-    /// Lengths in feet, diameters in inches, weights in pounds a foot.
+    /// Lengths in feet, diameters in inches, weights in pounds a foot, forces in thousand pounds, torques in foot-pounds.
     Field,
 }
 
@@ -26,6 +26,9 @@ pub(crate) enum Dimension {
     Diameter,
     /// Mass or weight, of a length or of the whole row.
     Weight,
+    /// A force, or the mass that weighs as much.
+    Force,
+    Torque,
     /// A number without a unit.
     Number,
 }
@@ -33,7 +36,7 @@ pub(crate) enum Dimension {
 /// A number in the unit of its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
-    /// Length \[m\], or a number without a unit.
+    /// Length \[m\], force \[N\], torque \[N m\], or a number without a unit.
     Plain(f64),
     /// Mass of a length \[kg/m\].
     PerLength(f64),
@@ -70,6 +73,10 @@ impl Dimension {
             (Self::Diameter, AssumedUnits::Field) => "in",
             (Self::Weight, AssumedUnits::Si) => "kg/m",
             (Self::Weight, AssumedUnits::Field) => "lb/ft",
+            (Self::Force, AssumedUnits::Si) => "kN",
+            (Self::Force, AssumedUnits::Field) => "klbf",
+            (Self::Torque, AssumedUnits::Si) => "kN m",
+            (Self::Torque, AssumedUnits::Field) => "ft lbf",
             (Self::Number, _) => "",
         }
     }
@@ -80,6 +87,8 @@ impl Dimension {
             Self::Length => "m or ft",
             Self::Diameter => "in, mm, cm or m",
             Self::Weight => "lb/ft or kg/m of a length; lb, klbf, kg, t, N, daN or kN of the whole row",
+            Self::Force => "kN, N, daN, klbf or lbf; kg, t or lb by its weight",
+            Self::Torque => "kN m, N m, ft lbf or kft lbf",
             Self::Number => "none",
         }
     }
@@ -89,6 +98,8 @@ impl Dimension {
             Self::Length => "a length",
             Self::Diameter => "a diameter",
             Self::Weight => "a weight",
+            Self::Force => "a force",
+            Self::Torque => "a torque",
             Self::Number => "a number",
         }
     }
@@ -105,6 +116,10 @@ impl Dimension {
                 .map(Value::PerLength)
                 .or_else(|| of(&MASS).map(Value::Whole))
                 .or_else(|| of(&FORCE).map(|weight| Value::Whole(weight / STANDARD_GRAVITY))),
+            Self::Force => {
+                of(&FORCE).or_else(|| of(&MASS).map(|mass| mass * STANDARD_GRAVITY)).map(Value::Plain)
+            }
+            Self::Torque => of(&TORQUE).map(Value::Plain),
             Self::Number => unit.is_empty().then(|| number.parse().ok().map(Value::Plain)).flatten(),
         }
     }
@@ -222,6 +237,15 @@ pub(crate) fn spelled(unit: &str) -> String {
         "pounds" => "lb",
         "kgs" => "kg",
         "tonne" | "tonnes" | "mt" => "t",
+        "klb" | "klbs" | "kips" | "kip" => "klbf",
+        "knm" | "kn.m" | "kn-m" | "kn*m" => "kN m",
+        "nm" | "n.m" | "n-m" | "n*m" => "N m",
+        "ft.lbf" | "ft.lb" | "ft*lbf" | "lbf.ft" | "lb.ft" | "lb-ft" | "lbf-ft" | "ft-lbs" | "ft lbs" => {
+            "ft lbf"
+        }
+        "kft.lbf" | "kft.lb" | "klbf.ft" | "klb.ft" | "kft-lbs" | "kft lbs" | "klb-ft" | "klbf-ft" => {
+            "kft lbf"
+        }
         _ => unit,
     };
     spelled.to_owned()

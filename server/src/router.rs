@@ -19,7 +19,7 @@ use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
     analysis, cost, events, export, files, forced, health, imports, points, quantities, report, results,
-    scenarios,    session, snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
+    scenarios, session, snapshots, spectrogram, statistics, status, sweeps, torque_drag, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, from the annotations of routes and types.

@@ -23,7 +23,7 @@ const USUAL_DEPTHS: u32 = 40;
 pub struct Broomstick {
     /// Motions and loads.
     pub modes: Vec<DragMode>,
-    /// Bit depths \[m\]; none for 40 of equal steps, the last at the end of the string.
+    /// Bit depths \[m\]; none for 40 of equal steps, the last at the scenario's.
     pub depths: Vec<f64>,
     /// Friction factors of the whole hole; none for the dynamic friction of each hole section.
     pub friction: Vec<f64>,
@@ -38,7 +38,7 @@ impl Broomstick {
     /// The scenario has no string in a well, a bit depth is not on the string, or there are too many cases.
     pub fn rows(&self, scenario: &Scenario) -> Result<Vec<BroomstickRow>, SoftStringError> {
         let string = SoftString::new(scenario)?;
-        let usual = |i: u32| string.length() * f64::from(i) / f64::from(USUAL_DEPTHS);
+        let usual = |i: u32| string.bit_depth() * f64::from(i) / f64::from(USUAL_DEPTHS);
         let depths = match &self.depths[..] {
             [] => (1..=USUAL_DEPTHS).map(usual).collect(),
             depths => depths.to_vec(),

@@ -2,7 +2,7 @@
 
 use drillsweep_quantity::columns::MEASURED_DEPTH;
 use drillsweep_quantity::{UnitSystem, units};
-use drillsweep_scenario::{Scenario, SectionKind};
+use drillsweep_scenario::{PlacedSection, Scenario, SectionKind};
 
 use crate::picture::{Drawing, Part, PartKind, StringSketch};
 use crate::shown::with_unit;
@@ -16,10 +16,11 @@ const MOST_PIECES: u32 = 400;
 /// The string in its hole along its length, in the units of a system: pipe, tool joints, collars, stabilizers, bit, blades and unbalance masses.
 /// Lengths are to scale, diameters too, but enlarged. A string with a short lower assembly has that once more, enlarged.
 pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
+    let scenario = &*scenario.in_hole();
     let unit = units::DEPTH.of(system);
     let mut parts = Vec::new();
-    let (mut depth, mut assembly) = (0.0, None);
-    for section in &scenario.string.sections {
+    let mut assembly = None;
+    for PlacedSection { section, top, .. } in scenario.string.placed_sections() {
         let kind = match section.kind {
             SectionKind::Drillpipe => PartKind::Pipe,
             SectionKind::Collar => PartKind::Collar,
@@ -28,11 +29,14 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
         };
         match kind {
             PartKind::Pipe => assembly = None,
-            _ => assembly = assembly.or(Some(depth)),
+            _ => assembly = assembly.or(Some(top.max(0.0))),
         }
+        let mut depth = top;
         let mut add = |kind: PartKind, length: f64, diameter: f64| {
-            let ends = [depth, depth + length].map(|depth| unit.of(depth));
-            parts.push(Part { kind, ends, diameter });
+            let ends = [depth.max(0.0), depth + length];
+            if ends[1] > ends[0] {
+                parts.push(Part { kind, ends: ends.map(|depth| unit.of(depth)), diameter });
+            }
             depth += length;
         };
         match section.tool_joint.filter(|_| section.count <= MOST_PIECES) {
@@ -47,7 +51,7 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
         }
     }
     // Sums of lengths miss round numbers, and with them the last tick.
-    let depth = (1e6 * depth).round() / 1e6;
+    let depth = (1e6 * scenario.string.depth_of_bit()).round() / 1e6;
     let mut strips = vec![[0.0, depth]];
     strips.extend(
         assembly.filter(|start| *start > 0.0 && depth - start < SHORT * depth).map(|start| [start, depth]),

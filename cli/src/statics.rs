@@ -25,7 +25,7 @@ pub(crate) struct StaticsArguments {
     /// Motions of the string: pick_up, slack_off, rotate, drill, slide, ream.
     #[arg(long, value_delimiter = ',', value_name = "MODES", value_parser = mode, default_values = ["pick_up", "slack_off", "rotate"])]
     modes: Vec<DragMode>,
-    /// Bit depths: a list or a range from:to:count, in m or with a unit; by default 40 to the end of the string. For a bit above that end pipe is missing at the top.
+    /// Bit depths: a list or a range from:to:count, in m or with a unit; by default 40 to that of the scenario. For a bit above the end of the string pipe is missing at the top.
     #[arg(long, value_name = "DEPTHS", value_parser = |text: &str| list(BIT_DEPTH.name, text))]
     depths: Option<List>,
     /// Friction factors of the whole hole: a list or a range from:to:count; by default the dynamic friction of each hole section.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use drillsweep_quantity::{UnitSystem, units};
-use drillsweep_scenario::{CATALOGUE, DrillString, SectionKind};
+use drillsweep_scenario::{CATALOGUE, DrillString, PlacedSection, SectionKind};
 use drillsweep_sim::validation::validate;
 use serde::Serialize;
 
@@ -37,6 +37,7 @@ pub(crate) fn tally(arguments: &TallyArguments) -> anyhow::Result<()> {
         Some(name) => {
             let scenario = arguments.changes.applied_to(name, None)?.resolve()?;
             validate(&scenario)?;
+            let scenario = scenario.in_hole();
             let components = components(&scenario.string);
             if arguments.json {
                 serde_json::to_string_pretty(&components)?
@@ -55,7 +56,7 @@ struct Component<'s> {
     name: &'s str,
     kind: SectionKind,
     count: u32,
-    /// Length of all pieces \[m\].
+    /// Length of all pieces in the hole \[m\].
     length: f64,
     /// Measured depth of its lower end \[m\].
     measured_depth_bottom: f64,
@@ -67,25 +68,19 @@ struct Component<'s> {
 }
 
 /// Components from the top.
-fn components(string: &DrillString) -> Vec<Component<'_>> {
-    let mut bottom = 0.0;
-    let sections = string.sections.iter();
-    sections
-        .map(|section| {
-            bottom += section.whole_length();
-            Component {
-                name: &section.name,
-                kind: section.kind,
-                count: section.count,
-                length: section.whole_length(),
-                measured_depth_bottom: bottom,
-                outer_diameter: section.outer_diameter,
-                inner_diameter: section.inner_diameter,
-                blade_diameter: section.blade_diameter,
-                mass: string.mass(section),
-            }
-        })
-        .collect()
+fn components<'s>(string: &'s DrillString) -> Vec<Component<'s>> {
+    let component = |placed: PlacedSection<'s>| Component {
+        name: &placed.section.name,
+        kind: placed.section.kind,
+        count: placed.section.count,
+        length: placed.length_in_hole(),
+        measured_depth_bottom: placed.bottom,
+        outer_diameter: placed.section.outer_diameter,
+        inner_diameter: placed.section.inner_diameter,
+        blade_diameter: placed.section.blade_diameter,
+        mass: string.mass_in_hole(&placed),
+    };
+    string.placed_sections().map(component).collect()
 }
 
 fn tally_text(components: &[Component<'_>], system: UnitSystem) -> String {

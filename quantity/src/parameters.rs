@@ -84,6 +84,7 @@ pub(super) static ALL: &[Quantity] = &[
         Some(&units::RATIO),
         "Poisson's ratio of the tool joint",
     ),
+    field("string.bit_depth", "", Some(&units::DEPTH), "bit depth"),
     field("string.gauges.measured_depth", "", Some(&units::DEPTH), "gauge depth"),
     field("string.gauges.clearance", "j_0", Some(&units::WIDTH), "gauge clearance"),
     field("string.unbalance.measured_depth", "", Some(&units::DEPTH), "unbalance depth"),

@@ -3,7 +3,7 @@
 use drillsweep_api::AxisName;
 use drillsweep_quantity::columns::{INNER_DIAMETER, MEASURED_DEPTH, OUTER_DIAMETER};
 use drillsweep_quantity::{UnitSystem, units};
-use drillsweep_scenario::{HoleSection, Scenario, Section};
+use drillsweep_scenario::{HoleSection, PlacedSection, Scenario};
 use drillsweep_table::Table;
 use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
@@ -47,6 +47,7 @@ impl Varied {
 
 /// The inputs in the units of a system; varied ones with their ranges.
 pub(crate) fn inputs(scenario: &Scenario, varied: &[Varied], system: UnitSystem) -> Markup {
+    let scenario = &*scenario.in_hole();
     let fields = serde_json::to_value(scenario).unwrap_or_default();
     let is_varied = |path: &str| varied.iter().any(|varied| varied.path() == path);
     let group = |title: &str, name: &str| {
@@ -118,7 +119,8 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
         true => format!("{least} to {largest}°"),
         false => format!("{largest}°"),
     };
-    let mass: f64 = scenario.string.sections.iter().map(|section| scenario.string.mass(section)).sum();
+    let mass: f64 =
+        scenario.string.placed_sections().map(|placed| scenario.string.mass_in_hole(&placed)).sum();
     let unit = units::MASS.of(system);
     let weight = format!("{} {}", crate::reading::number(unit.of(mass)), unit.text());
     let rows = [
@@ -127,7 +129,7 @@ fn well(scenario: &Scenario, system: UnitSystem) -> Markup {
         ("survey stations", survey.len().to_string()),
         ("surveyed to", survey.last().map_or(NONE.to_owned(), |last| depth(last.measured_depth))),
         ("inclination", range),
-        ("string length", depth(length(&scenario.string.sections))),
+        ("string length", depth(scenario.string.depth_of_bit())),
         ("string in air", weight),
         ("gauges", scenario.gauges().len().to_string()),
         ("unbalance masses", scenario.string.unbalance.len().to_string()),
@@ -150,12 +152,8 @@ fn hole_sections(scenario: &Scenario, system: UnitSystem) -> String {
     scenario.well.section.iter().enumerate().map(section).collect::<Vec<_>>().join("; ")
 }
 
-fn length(sections: &[Section]) -> f64 {
-    sections.iter().map(|section| f64::from(section.count) * section.length).sum()
-}
-
 fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
-    let sections = &scenario.string.sections;
+    let sections: Vec<PlacedSection<'_>> = scenario.string.placed_sections().collect();
     let shown = sections.len().min(MOST_SECTIONS);
     // The lower end is what matters: of many sections the upper ones are summarised.
     let (above, listed) = sections.split_at(sections.len() - shown);
@@ -163,18 +161,9 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
     let (along, across) = (symbol(MEASURED_DEPTH.name), symbol(OUTER_DIAMETER.name));
     let weight = units::MASS.of(system).text();
     let bare = |units: &units::Units, value: f64| crate::reading::number(units.of(system).of(value));
-    let mut bottom = length(above);
-    let rows: Vec<(&Section, f64, f64)> = listed
-        .iter()
-        .map(|section| {
-            let piece = f64::from(section.count) * section.length;
-            bottom += piece;
-            (section, piece, bottom)
-        })
-        .collect();
     html! {
-        @if !above.is_empty() {
-            p.soft { (above.len()) " sections above, " (amount(MEASURED_DEPTH.name, length(above), system)) " in all, are not listed." }
+        @if let Some(last) = above.last() {
+            p.soft { (above.len()) " sections above, " (amount(MEASURED_DEPTH.name, last.bottom, system)) " in all, are not listed." }
         }
         table {
             thead { tr {
@@ -183,13 +172,13 @@ fn sections(scenario: &Scenario, system: UnitSystem) -> Markup {
                 th.n { "tool joints [" (across) "]" }
             } }
             tbody {
-                @for (section, piece, bottom) in rows {
+                @for placed @ PlacedSection { section, bottom, .. } in listed {
                     tr {
                         td { (if section.name.is_empty() { section.kind.name() } else { &section.name }) }
                         td.n { (section.count) }
-                        td.n { (bare(&units::MASS, scenario.string.mass(section))) }
-                        td.n { (bare(&units::DEPTH, piece)) }
-                        td.n { (bare(&units::DEPTH, bottom)) }
+                        td.n { (bare(&units::MASS, scenario.string.mass_in_hole(placed))) }
+                        td.n { (bare(&units::DEPTH, placed.length_in_hole())) }
+                        td.n { (bare(&units::DEPTH, *bottom)) }
                         td.n { (bare(&units::WIDTH, section.outer_diameter)) }
                         td.n { (bare(&units::WIDTH, section.inner_diameter)) }
                         td.n { (section.tool_joint.map_or(NONE.to_owned(), |joint| bare(&units::WIDTH, joint.outer_diameter))) }

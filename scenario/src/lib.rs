@@ -11,6 +11,7 @@ mod failure;
 mod format;
 mod hole;
 mod hydraulics;
+mod in_hole;
 mod mesh;
 mod nearest;
 mod number;
@@ -33,6 +34,7 @@ pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
 pub use failure::{FailureClass, PointError};
 pub use hole::{Hole, HoleSection};
 pub use hydraulics::{Hydraulics, PressureLosses};
+pub use in_hole::PlacedSection;
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
 pub use nearest::{nearest, unknown_preset};
 pub use outputs::{OrbitOutputs, Outputs};
@@ -138,9 +140,14 @@ pub struct SurveyStation {
 pub struct DrillString {
     /// The steel (or other material) of every section and tool joint that has none of its own.
     pub material: Material,
-    /// Sections from the top down, 1 or more, together no longer than the survey.
+    /// Sections from the top down, 1 or more, of which the part in the hole is no longer than the survey.
     #[schema(value_type = Vec<WrittenSection>)]
     pub sections: Vec<Section>,
+    /// Measured depth of the bit \[m\], above 0 and at most the length of all sections; absent means that length, all of the string. With less, only the lowest
+    /// `bit_depth` metres of the string are in the hole: sections above the top of the hole are left out, the first one in it is cut, and
+    /// its tool joints stay where they are from the bit. Places that are given by measured depth stay in the hole and do not move with the bit.
+    #[serde(default)]
+    pub bit_depth: Option<f64>,
     /// Points at which the clearance is given; none by default. Each has a node. Without them, and without blades of sections, stabilizers touch the
     /// wall with their bodies only.
     #[serde(default)]

@@ -4,7 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{DrillString, Gauge, Grade, Material, Scenario, catalogue};
+use crate::in_hole::SAME_DEPTH;
+use crate::{DrillString, Gauge, Grade, Material, PlacedSection, Scenario, catalogue};
 
 /// `count` equal pieces of pipe, one after the other, or one component of the bottom-hole assembly; lengths and diameters in metres. The fields are those of
 /// [`WrittenSection`] after the catalogue's have been filled in.
@@ -178,9 +179,6 @@ pub struct ToolJoint {
 /// Smallest clearance of blades \[m\], that of blades of the hole's diameter: the paper's of stabilizers and bit.
 pub const BLADE_CLEARANCE: f64 = 1e-4;
 
-/// Difference of depths that rounding makes \[m\].
-const SAME_DEPTH: f64 = 1e-6;
-
 /// Pieces of a section that get blades; no mesh has as many.
 const MOST_BLADED_PIECES: u32 = 100_000;
 
@@ -213,12 +211,10 @@ impl Tube {
 impl DrillString {
     /// Name of the component at a measured depth \[m\], of the upper one at a boundary; empty without a name.
     pub fn component_at(&self, measured_depth: f64) -> &str {
-        let mut bottom = 0.0;
-        let found = self.sections.iter().find(|section| {
-            bottom += section.whole_length();
-            measured_depth <= bottom + SAME_DEPTH
-        });
-        found.map_or("", |section| &section.name)
+        let is_there = |placed: &PlacedSection<'_>| {
+            placed.bottom > SAME_DEPTH && measured_depth <= placed.bottom + SAME_DEPTH
+        };
+        self.placed_sections().find(is_there).map_or("", |placed| &placed.section.name)
     }
 
     /// Material of the bodies of a section, by their diameters.
@@ -307,11 +303,10 @@ impl Section {
 }
 
 impl Scenario {
-    /// Gauges of the string: those of its list, then the blades of its sections from the top down.
+    /// Gauges of the string in the hole: those of its list, then the blades of its sections from the top down.
     pub fn gauges(&self) -> Vec<Gauge> {
         let mut gauges = self.string.gauges.clone();
-        let mut top = 0.0;
-        for section in &self.string.sections {
+        for PlacedSection { section, top, .. } in self.string.placed_sections() {
             if let Some(blade_diameter) = section.blade_diameter {
                 let blades = |piece: u32| {
                     let measured_depth =
@@ -319,9 +314,9 @@ impl Scenario {
                     let left = 0.5 * (self.hole_at(measured_depth).diameter - blade_diameter);
                     Gauge { measured_depth, clearance: left.max(BLADE_CLEARANCE) }
                 };
-                gauges.extend((0..section.count.min(MOST_BLADED_PIECES)).map(blades));
+                let pieces = (0..section.count.min(MOST_BLADED_PIECES)).map(blades);
+                gauges.extend(pieces.filter(|blades| top >= 0.0 || blades.measured_depth >= 0.0));
             }
-            top += section.whole_length();
         }
         gauges
     }

@@ -14,7 +14,7 @@ use crate::force::effect::active_effects;
 /// same numbers, however they are written.
 ///
 /// It is the scenario without its `name`, with the accuracy as integrator, step and promise, the material of every section and tool joint,
-/// the wall's defaults of a length, windows that follow the duration, the factor on the mesh `auto` that the accuracy chooses, and the names
+/// the part of the string that is in the hole, the wall's defaults of a length, windows that follow the duration, the factor on the mesh `auto` that the accuracy chooses, and the names
 /// of the active effects in place of the switches. Fields with their default value are left out, so that a new field with a default, or a new
 /// effect that old scenarios do not activate, changes no key. Numbers that are not finite, which validation refuses, are `null`.
 pub fn canonical_json(scenario: &Scenario) -> String {
@@ -31,6 +31,7 @@ pub struct CanonicalJson {
 impl CanonicalJson {
     /// Canonical JSON of the next scenario.
     pub fn of(&mut self, scenario: &Scenario) -> String {
+        let scenario = &*scenario.in_hole();
         static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults::of(&with_every_section()));
         let active = active_effects(scenario);
         match &mut self.last {
@@ -656,6 +657,7 @@ mod tests {
             ".hydraulics.nozzle_area",
             ".hydraulics.surface_case",
             ".operation.length_above",
+            ".string.bit_depth",
             ".string.material.grade",
             ".string.sections.blade_above_end",
             ".string.sections.blade_diameter",

@@ -71,7 +71,7 @@ pub(super) fn points(
 mod tests {
     use serde_json::{Value, json};
 
-    use crate::expand::tests::{pointers, problems};
+    use crate::expand::tests::{expansion, pointers, problems};
 
     #[test]
     fn unsafe_time_stepping_is_refused_with_a_valid_step() {
@@ -88,6 +88,32 @@ mod tests {
         assert!(undamped.len() == 1 && undamped[0].2.contains("0 to 0.95"), "{undamped:?}");
         let one_iteration = of(json!({"integrator": "esdirk4", "step": 1e-3, "contact_sweeps": 1}));
         assert!(one_iteration.len() == 1 && one_iteration[0].2.contains("2 to"), "{one_iteration:?}");
+    }
+
+    #[test]
+    fn bit_depth_is_an_axis_whose_points_have_keys_of_their_own() {
+        let body = |depths: Value| {
+            json!({
+                "preset": "paper-200m",
+                "set": {"string.gauges": [], "string.unbalance": [], "recording.nodes": [{"depth": 50}]},
+                "axes": {"string.bit_depth": {"values": depths}},
+            })
+        };
+        let depths = [80.0, 110.5, 158.0, 162.0, 199.9, 200.0];
+        let expanded = expansion(body(json!(depths)));
+        let mut keys: Vec<_> = expanded.points.iter().map(|point| point.key).collect();
+        for (point, depth) in expanded.points.iter().zip(depths) {
+            assert_eq!(expanded.scenario(point).string.bit_depth, Some(depth));
+        }
+        let mut whole = body(json!([200.0]));
+        whole.as_object_mut().unwrap().remove("axes");
+        assert_eq!(expansion(whole).points[0].key, keys[5], "the whole string as without a bit depth");
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), depths.len());
+        let found = problems(body(json!([80.0, 250.0])));
+        assert_eq!((found.len(), found[0].0.as_str()), (1, "/axes/string.bit_depth/values/1"), "{found:?}");
+        assert!(found[0].2.contains("at most the length of the string, 200 m"), "{found:?}");
     }
 
     #[test]

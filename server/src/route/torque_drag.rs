@@ -33,8 +33,8 @@ pub(crate) struct TorqueDragQuery {
     #[serde(default = "usual_modes", deserialize_with = "modes")]
     #[param(value_type = Option<String>, example = "pick_up,slack_off,rotate,drill")]
     modes: Vec<DragMode>,
-    /// Bit depths \[m\]: numbers separated by commas, or `FROM:TO:COUNT`; absent means 40 to the end of the string. For a bit above that end pipe is
-    /// missing at the top.
+    /// Bit depths \[m\]: numbers separated by commas, or `FROM:TO:COUNT`; absent means 40 to that of the scenario. For a bit above the end of the
+    /// string pipe is missing at the top.
     #[serde(default, deserialize_with = "value::list")]
     #[param(value_type = Option<String>, example = "50:200:4")]
     depths: Vec<f64>,

@@ -163,11 +163,11 @@ async function drawQuantities(place, comparison) {
         ),
       ),
   };
-  const strings = drawable.map(({ detail }) => detail.scenario.string.sections);
-  const isOne = new Set(strings.map((sections) => JSON.stringify(sections))).size === 1;
-  if (isOne) comparison.says.push(sayTrack(partsOf(strings[0])));
+  const [parts, ...others] = drawable.map(({ detail }) => partsOf(detail.scenario.string));
+  const isOne = others.every((other) => JSON.stringify(other) === JSON.stringify(parts));
+  if (isOne) comparison.says.push(sayTrack(parts));
   comparison.says.push(signRules(profiles));
-  const track = isOne ? { parts: partsOf(strings[0]), nodes: [] } : null;
+  const track = isOne ? { parts, nodes: [] } : null;
   return drawProfiles(place, profiles, drawable, track, comparison.signal);
 }
 

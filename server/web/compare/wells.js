@@ -43,7 +43,7 @@ export async function drawWells(place, comparison) {
   if (!found.length) return fill(place);
   const strings = found.map(([point, { statics }]) => ({
     statics,
-    sections: point.detail.scenario.string.sections,
+    string: point.detail.scenario.string,
     heading: point.name,
     colour: point.colour,
   }));

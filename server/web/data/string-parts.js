@@ -3,21 +3,26 @@
 /** Kinds of parts from the slimmest. @typedef {"drillpipe" | "tool_joint" | "collar" | "stabilizer" | "bit"} Kind */
 /** A part between two measured depths [m]. @typedef {{kind: Kind, from: number, to: number}} Part */
 
+/** @typedef {{name?: string, kind?: Kind, count?: number, length: number, tool_joint?: {length: number} | null}} Section */
+/** The string of a scenario: its sections in their order, and the depth of the bit. @typedef {{sections: Section[], bit_depth?: number | null}} DrillString */
+
 /**
- * The parts of a scenario's sections, from the top.
- * @param {{kind: Kind, count?: number, length: number, tool_joint?: {length: number} | null}[]} sections
+ * The parts of a string that are in the hole, from the top.
+ * @param {DrillString} string
  * @returns {Part[]}
  */
-export function partsOf(sections) {
+export function partsOf(string) {
   /** @type {Part[]} */
   const parts = [];
-  let depth = 0;
-  const add = (/** @type {Kind} */ kind, /** @type {number} */ length) => {
-    parts.push({ kind, from: depth, to: depth + length });
-    depth += length;
-  };
-  for (const { kind, count = 1, length, tool_joint } of sections) {
-    const joint = tool_joint?.length ?? 0;
+  for (const { section, top } of placedSections(string)) {
+    let depth = top;
+    const add = (/** @type {Kind} */ kind, /** @type {number} */ length) => {
+      const to = depth + length;
+      if (to > SAME_DEPTH) parts.push({ kind, from: Math.max(depth, 0), to });
+      depth = to;
+    };
+    const { kind = "drillpipe", count = 1, length } = section;
+    const joint = section.tool_joint?.length ?? 0;
     for (let piece = 0; piece < count; piece += 1) {
       if (joint) add("tool_joint", joint);
       add(kind, length - 2 * joint);
@@ -29,16 +34,30 @@ export function partsOf(sections) {
 
 /**
  * Name of the component at a measured depth [m], of the upper one at a boundary; empty without a name.
- * @param {{name?: string, count?: number, length: number}[]} sections
+ * @param {DrillString} string
  * @param {number} depth
  */
-export function componentAt(sections, depth) {
-  let bottom = 0;
-  const found = sections.find(({ count = 1, length }) => {
-    bottom += count * length;
-    return depth <= bottom + SAME_DEPTH;
+export function componentAt(string, depth) {
+  const found = placedSections(string).find(
+    ({ bottom }) => bottom > SAME_DEPTH && depth <= bottom + SAME_DEPTH,
+  );
+  return found?.section.name ?? "";
+}
+
+/**
+ * Sections from the top down with the measured depths of their ends [m]: negative above the hole, NaN from a length on that is no number.
+ * @param {DrillString} string
+ */
+export function placedSections({ sections, bit_depth }) {
+  const lengthOf = (/** @type {Section} */ { count = 1, length }) =>
+    typeof length === "number" ? count * length : NaN;
+  const whole = sections.reduce((length, section) => length + lengthOf(section), 0);
+  let bottom = bit_depth ? Math.min(bit_depth - whole, 0) : 0;
+  return sections.map((section) => {
+    const top = bottom;
+    bottom += lengthOf(section);
+    return { section, top, bottom };
   });
-  return found?.name ?? "";
 }
 
 /** Difference of depths that rounding makes [m]. */

@@ -149,7 +149,7 @@ export class Overview {
     const { point, table } = this.#context;
     if (!point.tables.includes("loads")) return;
     const { columns } = await table("loads", { fields: "node,measured_depth,side_force,orbit_radius_rms" });
-    const parts = partsOf(point.scenario.string.sections);
+    const parts = partsOf(point.scenario.string);
     const most = (/** @type {string} */ name) => say(name, Math.max(...columns[name].map(Math.abs)), 3);
     const nodes = recordedAt(point.scenario, columns);
     const words = `Depth in ${unit("measured_depth").symbol}. Blue: orbit size up to ${most("orbit_radius_rms")}; orange: side force up to ${most("side_force")}. Dots: recorded nodes.`;

@@ -55,9 +55,9 @@ export class MotionControls {
     const entry = (/** @type {string} */ name, /** @type {HTMLInputElement} */ box) =>
       h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => this.#set(name, value);
-    const { sections } = point.scenario.string;
+    const { string } = point.scenario;
     const atDepth = (/** @type {number} */ depth) =>
-      [say("measured_depth", depth), componentAt(sections, depth)].filter(Boolean).join(", ");
+      [say("measured_depth", depth), componentAt(string, depth)].filter(Boolean).join(", ");
     const nodeName = (/** @type {any} */ node) =>
       node.node !== undefined ? `${node.node}${depthOf(node.node)}` : atDepth(node.depth);
     fill(

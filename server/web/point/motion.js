@@ -200,7 +200,7 @@ class NodeMotion {
 
   /** @param {number} depth [m] */
   #componentAt(depth) {
-    return componentAt(this.#context.point.scenario.string.sections, depth);
+    return componentAt(this.#context.point.scenario.string, depth);
   }
 
   /** Equilibrium of the node whose tables are shown. */

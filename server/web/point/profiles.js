@@ -227,7 +227,7 @@ export function profiles(context) {
   const begin = generations();
   const caption = h("figcaption", {});
   const { scenario } = context.point;
-  const parts = partsOf(scenario.string.sections);
+  const parts = partsOf(scenario.string);
 
   async function redraw() {
     const isNewest = begin();

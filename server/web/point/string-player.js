@@ -84,7 +84,7 @@ export class StringPlayer {
     this.#actors = strings.map((one, order) => ({
       ...one,
       geometry: geometries[order],
-      kinds: kindsOf(partsOf(one.context.point.scenario.string.sections), one.statics.measured_depth),
+      kinds: kindsOf(partsOf(one.context.point.scenario.string), one.statics.measured_depth),
       motion: null,
       isWhole: false,
       means: null,

@@ -11,7 +11,7 @@ import { saveStrings } from "./string-file.js";
 /**
  * A string at rest: `statics` has the columns of the table, `heading` is empty if there is one string, and `colour` that of the string
  * where it stands for no values.
- * @typedef {{statics: any, sections: any[], heading: string, colour?: string}} RestingString
+ * @typedef {{statics: any, string: import("../data/string-parts.js").DrillString, heading: string, colour?: string}} RestingString
  */
 
 /** @typedef {(number | null)[]} NodeValues */
@@ -35,7 +35,7 @@ export class WellPictures {
     this.#strings = strings.map((one) => ({
       ...one,
       frames: nodeFrames(one.statics),
-      kinds: kindsOf(partsOf(one.sections), one.statics.measured_depth),
+      kinds: kindsOf(partsOf(one.string), one.statics.measured_depth),
     }));
     this.#view = new SharedView(this.#strings[0].frames.axis, link);
     this.#scenes = strings.map(({ heading }) =>

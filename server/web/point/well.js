@@ -42,8 +42,8 @@ export function well(context) {
     const table = tableOf(name) === "statics" ? statics : (await context.table(tableOf(name))).columns;
     if (!isNewest()) return;
     if (!pictures) {
-      const { sections } = context.point.scenario.string;
-      pictures = new WellPictures([{ statics, sections, heading: "" }], context);
+      const { string } = context.point.scenario;
+      pictures = new WellPictures([{ statics, string, heading: "" }], context);
       fill(place, pictures.element);
     }
     fill(

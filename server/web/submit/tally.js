@@ -1,6 +1,6 @@
 // The string of a new sweep as tables: its sections from the top (the tally), gauges and unbalance masses.
 
-import { partsOf } from "../data/string-parts.js";
+import { partsOf, placedSections } from "../data/string-parts.js";
 import { inputUnit, number, say } from "../data/units.js";
 import { drawTrack, smallCanvas } from "../draw/small-pictures.js";
 import { partsInWords } from "../draw/string-track.js";
@@ -98,17 +98,6 @@ export function isTally({ name, values }) {
   return Array.isArray(value) && value.every((row) => typeof row === "object" && row !== null);
 }
 
-/**
- * Measured depth of the lower end of each section [m]; NaN below a length that is no number.
- * @param {{count?: number, length: number}[]} sections
- */
-export function lowerEnds(sections) {
-  let depth = 0;
-  return sections.map(
-    ({ count = 1, length }) => (depth += typeof length === "number" ? count * length : NaN),
-  );
-}
-
 /** Name of a material; `own` for other numbers, empty if there is none. @param {Material | null | undefined} material */
 export function materialName(material) {
   if (!material) return "";
@@ -179,17 +168,18 @@ function withoutNulls(value) {
 function stringFields(edited, file) {
   /** @type {any[]} */
   const sections = edited.value(SECTIONS) ?? [];
+  const bit_depth = edited.value("string.bit_depth");
   const below = [
     ...ownMaterials(sections, edited),
     lengthLine(sections, edited),
-    picturePart(sections),
+    picturePart({ sections, bit_depth }),
     file,
   ];
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
     texts: (/** @type {any[]} */ rows) =>
-      lowerEnds(rows).map((end) =>
-        Number.isFinite(end) ? number(readersNumber("measured_depth", end), 6) : "–",
+      placedSections({ sections: rows, bit_depth }).map(({ bottom }) =>
+        Number.isFinite(bottom) && bottom > 0 ? number(readersNumber("measured_depth", bottom), 6) : "–",
       ),
   };
   return TABLES.map((table) =>
@@ -266,10 +256,14 @@ function materialLine(path, heading, material, edited) {
   );
 }
 
-/** The string as results show it, so that a wrong length or order is seen before it is computed. @param {any[]} sections */
-function picturePart(sections) {
-  if (!sections.length || !lowerEnds(sections).every(Number.isFinite)) return h("p", { hidden: true });
-  const parts = partsOf(sections);
+/**
+ * The string as results show it, so that a wrong length or order is seen before it is computed.
+ * @param {import("../data/string-parts.js").DrillString} string
+ */
+function picturePart(string) {
+  const ends = placedSections(string).map(({ bottom }) => bottom);
+  if (!ends.length || !ends.every(Number.isFinite)) return h("p", { hidden: true });
+  const parts = partsOf(string);
   const picture = smallCanvas(`String over depth: ${partsInWords(parts)}`);
   drawTrack(picture, parts, { depths: [], curves: [], nodes: [] });
   return picture;
@@ -277,7 +271,7 @@ function picturePart(sections) {
 
 /** Length of the string next to the depth to which its survey reaches. @param {any[]} sections @param {import("./fields.js").Edited} edited */
 function lengthLine(sections, edited) {
-  const length = lowerEnds(sections).at(-1) ?? 0;
+  const length = placedSections({ sections }).at(-1)?.bottom ?? 0;
   const reach = edited.value("well.survey")?.at(-1)?.measured_depth;
   if (!Number.isFinite(length)) return h("p", { hidden: true });
   return h(

@@ -47,8 +47,7 @@ pub(super) fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -
 }
 
 fn is_far(scenario: &Scenario, [top, bottom]: [f64; 2]) -> bool {
-    let sections = scenario.string.sections.iter();
-    let bit: f64 = sections.map(Section::whole_length).sum();
+    let bit = scenario.string.depth_of_bit();
     // A node that is chosen by its number says nothing of a depth.
     let recorded = scenario.recording.nodes.iter().filter_map(|choice| match choice {
         NodeChoice::Depth(depth) => Some(*depth),

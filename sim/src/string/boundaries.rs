@@ -1,7 +1,7 @@
 //! Places at which the string must have nodes.
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, Scenario, Section, SectionKind, Tube, WrittenOutMesh,
+    DrillString, ElementLengths, PlacedSection, Scenario, Section, SectionKind, Tube, WrittenOutMesh,
 };
 
 use super::auto;
@@ -54,11 +54,10 @@ pub(crate) struct UniformPart {
     pub(crate) target: f64,
 }
 
-/// The parts of the string by its sections, from the top down.
+/// The parts of the string in the hole by its sections, from the top down.
 pub(crate) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshError> {
     let mut stretches = Vec::new();
-    let mut section_top = 0.0;
-    for (index, section) in scenario.string.sections.iter().enumerate() {
+    for PlacedSection { index, section, top: section_top, .. } in scenario.string.placed_sections() {
         let is_length = |length: f64| length.is_finite() && length > 0.0;
         if !is_length(section.length) || section.count == 0 {
             return Err(MeshError::NoLength { section: index });
@@ -79,12 +78,24 @@ pub(crate) fn stretches(scenario: &Scenario) -> Result<Vec<UniformPart>, MeshErr
             let targets = targets(section, scenario, [top, bottom]);
             push_piece(&mut stretches, &scenario.string, index, targets, [top, bottom]);
         }
-        section_top += f64::from(section.count) * section.length;
+    }
+    if scenario.string.bit_depth.is_some() {
+        cut_at_top(&mut stretches);
     }
     if stretches.is_empty() {
         return Err(MeshError::NoSections);
     }
     Ok(stretches)
+}
+
+/// Leaves out the parts above the hole. The rest of a part that is shorter than [`SNAP_FRACTION`] of its target joins the part below.
+fn cut_at_top(stretches: &mut Vec<UniformPart>) {
+    let is_left_out = |part: &UniformPart| part.bottom <= SNAP_FRACTION * part.target;
+    let left_out = stretches.iter().take_while(|part| is_left_out(part)).count();
+    stretches.drain(..left_out.min(stretches.len().saturating_sub(1)));
+    if let Some(first) = stretches.first_mut() {
+        first.top = 0.0;
+    }
 }
 
 /// Target element lengths \[m\] of body and tool joints of a piece of a section between two depths.

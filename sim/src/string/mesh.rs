@@ -73,7 +73,7 @@ pub struct StringMesh {
 }
 
 impl StringMesh {
-    /// Cuts the string of a scenario into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
+    /// Cuts the string of a scenario that is in the hole into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
     /// of section, tool joint, hole section, gauge and unbalance mass is a node; each part between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
@@ -84,6 +84,7 @@ impl StringMesh {
     /// A section has no length, a target is not positive, there are more than [`MAX_ELEMENTS`] elements, or a gauge or
     /// mass is not on the string.
     pub fn new(scenario: &Scenario) -> Result<Self, MeshError> {
+        let scenario = &*scenario.in_hole();
         let string = &scenario.string;
         let stretches = boundaries::stretches(scenario)?;
         let length = stretches.last().map_or(0.0, |stretch| stretch.bottom);

@@ -54,10 +54,12 @@ fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems
         scenario.name.escape_default(),
         "must hold no control characters",
     );
+    let written = scenario;
+    let scenario = &*written.in_hole();
     // A mesh that follows from the scenario may change with any number.
     let mesh = if with_shape || scenario.mesh.is_auto() {
         hole::check(&mut report, scenario);
-        string::check(&mut report, scenario)
+        string::check(&mut report, written, scenario)
     } else {
         None
     };

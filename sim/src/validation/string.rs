@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, Material, Mesh, MeshName, NodeChoice, ScaledMesh, Scenario, Section,
-    ToolJoint, WallLaw,
+    DrillString, ElementLengths, Material, Mesh, MeshName, NodeChoice, PlacedSection, ScaledMesh, Scenario,
+    Section, ToolJoint, WallLaw,
 };
 
 use super::report::Report;
@@ -13,6 +13,15 @@ use crate::string::{MAX_ELEMENTS, MeshElement, MeshError, StringMesh};
 
 /// Difference \[m\] below which depths of nodes and stated depths are the same.
 const SAME_DEPTH: f64 = 1e-9;
+
+/// Excess \[m\] of a bit depth over the sum of many lengths that is rounding.
+const ROUNDED_DEPTH: f64 = 1e-6;
+
+/// Bit depth \[m\] below which no string is in the hole.
+const SHORTEST: f64 = 0.01;
+
+/// Path of the bit depth.
+const BIT_DEPTH: &str = "string.bit_depth";
 
 /// Outer diameters \[m\] from rods of mineral exploration to bits of 48 in.
 const USUAL_DIAMETERS: RangeInclusive<f64> = 0.02..=1.2;
@@ -32,14 +41,14 @@ const DENSEST_SOLID: f64 = 23_000.0;
 /// Largest Young's modulus of a solid: diamond, the stiffest one, has 1.2e12 Pa.
 const STIFFEST_SOLID: f64 = 1.5e12;
 
-/// Checks the string; returns its mesh if there is one.
-pub(super) fn check(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
+/// Checks the string of a scenario as it is written, and as it is in the hole; returns its mesh if there is one.
+pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<StringMesh> {
     material(report, "string.material", &scenario.string.material);
-    for i in 0..scenario.string.sections.len() {
-        section(report, scenario, i);
+    for placed in written.string.placed_sections() {
+        section(report, written, &placed);
     }
     mesh_targets(report, scenario);
-    length(report, scenario);
+    length(report, written);
     masses(report, scenario);
     for (i, gauge) in scenario.string.gauges.iter().enumerate() {
         report.positive(gauge.clearance, format!("string.gauges[{i}].clearance"));
@@ -75,13 +84,16 @@ fn material(report: &mut Report, path: &str, material: &Material) {
     );
 }
 
-fn section(report: &mut Report, scenario: &Scenario, index: usize) {
-    let section = &scenario.string.sections[index];
-    let path = format!("string.sections[{index}]");
+fn section(report: &mut Report, scenario: &Scenario, placed: &PlacedSection<'_>) {
+    let section = placed.section;
+    let path = format!("string.sections[{}]", placed.index);
     report.require(section.count > 0, format!("{path}.count"), section.count, "must be 1 or more");
     report.positive(section.length, format!("{path}.length"));
-    let top: f64 = scenario.string.sections[..index].iter().map(Section::whole_length).sum();
-    let hole = scenario.well.narrowest_hole([top, top + section.whole_length()]);
+    let hole = match placed.bottom {
+        // Pipe above the hole meets no wall.
+        bottom if bottom <= 0.0 => f64::INFINITY,
+        bottom => scenario.well.narrowest_hole([placed.top, bottom]),
+    };
     pipe(report, &path, section.outer_diameter, section.inner_diameter, hole);
 
     if let Some(own) = &section.material {
@@ -251,7 +263,7 @@ fn mesh_targets(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-/// Requires that the string has sections and ends within the survey.
+/// Requires that the string has sections, and that the bit is at their end or above it, and within the survey.
 fn length(report: &mut Report, scenario: &Scenario) {
     let sections = &scenario.string.sections;
     report.require(
@@ -260,17 +272,35 @@ fn length(report: &mut Report, scenario: &Scenario) {
         "an empty list",
         "must have at least one section",
     );
-    let length: f64 = sections.iter().map(Section::whole_length).sum();
+    let whole = scenario.string.whole_length();
+    if let Some(bit) = scenario.string.bit_depth.filter(|_| whole.is_finite() && whole > 0.0) {
+        report.number(
+            bit,
+            BIT_DEPTH,
+            |bit| bit > SHORTEST && bit <= whole + ROUNDED_DEPTH,
+            format!("must be above {SHORTEST} m and at most the length of the string, {whole} m"),
+        );
+    }
+    let length = scenario.string.depth_of_bit();
     if let Some(bottom) = scenario.well.survey.last().map(|station| station.measured_depth)
         && bottom.is_finite()
         && scenario.well.survey.len() >= 2
     {
-        report.require(
-            !length.is_finite() || length <= bottom + SAME_DEPTH,
-            "string.sections",
-            format!("{length} m in all"),
-            format!("the string must not be longer than its survey, {bottom} m"),
-        );
+        let is_surveyed = !length.is_finite() || length <= bottom + SAME_DEPTH;
+        match scenario.string.bit_depth {
+            Some(bit) => report.require(
+                is_surveyed,
+                BIT_DEPTH,
+                bit,
+                format!("the bit must not be below its survey, {bottom} m"),
+            ),
+            None => report.require(
+                is_surveyed,
+                "string.sections",
+                format!("{length} m in all"),
+                format!("the string must not be longer than its survey, {bottom} m"),
+            ),
+        }
     }
 }
 

@@ -352,7 +352,7 @@ class Point(Reported):
 
         Args:
             modes: Some of `pick_up`, `slack_off`, `rotate` (these three unless given), `drill`, `slide` and `ream`.
-            depths: Depths of the bit [m]; 40 to the end of the string unless given.
+            depths: Depths of the bit [m]; 40 to that of the scenario unless given.
             friction: Friction factors of the whole hole; the dynamic friction of each hole section unless given.
             travelling_weight: Weight of top drive and travelling block [N].
             axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.

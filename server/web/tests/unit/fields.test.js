@@ -9,7 +9,7 @@ import { changedField, memberOf, withMember } from "../../submit/members.js";
 import { isMesh, proposedMesh, wayOf } from "../../submit/mesh.js";
 import { isRecording, wayOf as windowWay } from "../../submit/recording.js";
 import { numbersOf } from "../../submit/table.js";
-import { isTally, lowerEnds, materialName } from "../../submit/tally.js";
+import { isTally, materialName } from "../../submit/tally.js";
 
 const SECTIONS = [
   { kind: "drillpipe", count: 9, length: 9.5, tool_joint: { length: 0.3, outer_diameter: 0.16 } },
@@ -73,9 +73,7 @@ test("the window of the statistics is fixed, settled or the last third", () => {
   assert.ok(!isRecording({ name: "recording.orbit_window.from", values: "3" }));
 });
 
-test("sections end at the sum of the lengths above", () => {
-  assert.deepEqual(lowerEnds(SECTIONS), [85.5, 86]);
-  assert.deepEqual(lowerEnds([{ length: "31 ft" }, { length: 2 }]), [NaN, NaN]);
+test("tables are fields with a list", () => {
   assert.ok(isTally({ name: "string.gauges", values: "[]" }));
   assert.ok(!isTally({ name: "string.sections", values: "all" }));
 });

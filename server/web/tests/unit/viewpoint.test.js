@@ -62,7 +62,7 @@ const SECTIONS = [
 ];
 
 test("a string has a tool joint at both ends of each piece of pipe", () => {
-  const parts = partsOf(SECTIONS);
+  const parts = partsOf({ sections: SECTIONS });
   assert.deepEqual(
     parts.map(({ kind }) => kind),
     [
@@ -77,7 +77,7 @@ test("a string has a tool joint at both ends of each piece of pipe", () => {
 
 test("elements have the part in their middle", () => {
   const depths = [0, 0.3, 5, 9.2, 9.5, 9.8, 19, 30, 49, 51, 51.5];
-  assert.deepEqual(kindsOf(partsOf(SECTIONS), depths), [
+  assert.deepEqual(kindsOf(partsOf({ sections: SECTIONS }), depths), [
     ...["tool_joint", "drillpipe", "drillpipe", "tool_joint", "tool_joint", "drillpipe"],
     ...["collar", "collar", "stabilizer", "bit"],
   ]);

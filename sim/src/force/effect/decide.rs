@@ -28,6 +28,7 @@ pub struct EffectDecision {
 /// numbers are those of the whole model to rounding. It omits the run in time if no output in time is requested. Only the
 /// aggressive rule neglects small effects.
 pub fn decide_effects(scenario: &Scenario) -> Vec<EffectDecision> {
+    let scenario = &*scenario.in_hole();
     // Gravity is decided before buoyancy, and friction torque before torsion, which depend on them.
     let mut active = ActiveEffects::ALL;
     let decide = |&effect: &Effect| {

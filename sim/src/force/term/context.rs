@@ -42,8 +42,7 @@ impl EffectContext<'_> {
 
     /// True if the hole is straight along the whole string.
     pub(crate) fn is_straight(&self) -> bool {
-        let sections = self.scenario.string.sections.iter();
-        let length: f64 = sections.map(|section| f64::from(section.count) * section.length).sum();
+        let length = self.scenario.string.depth_of_bit();
         self.scenario.well.survey.windows(2).all(|stations| {
             let [above, below] = stations else { return true };
             above.measured_depth >= length || same_direction(above, below)

@@ -29,7 +29,7 @@ pub type NodalVector<const D: usize = DOFS> = Vec<[f64; D]>;
 /// The string in its well.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// The scenario that it was built from.
+    /// The scenario that it was built from, with the string that is in the hole.
     pub scenario: Scenario,
     /// The effects that take part in it.
     pub effects: ActiveEffects,
@@ -66,6 +66,7 @@ impl Model {
     /// # Errors
     /// The survey has no path or the string has no mesh; a validated scenario has both.
     pub fn new(scenario: &Scenario) -> Result<Self, ModelError> {
+        let scenario = &*scenario.in_hole();
         let path = WellPath::new(&scenario.well)?;
         let effects = active_effects(scenario);
         let mesh = StringMesh::new(scenario)?;

@@ -15,15 +15,15 @@ pub enum SoftStringError {
     /// The string has no sections.
     #[error("string: {0}")]
     String(#[from] MeshError),
-    /// The bit is above the top or below the end of the string.
+    /// The bit is above the top, or below the end of the whole string or of the survey.
     #[error(
-        "the bit is at {bit_depth} m; it must be on the string of {length} m, which is shortened at its top"
+        "the bit is at {bit_depth} m; it must be above 0 and at most {deepest} m, the end of string and survey, and the string is shortened at its top"
     )]
     BitDepth {
         /// Measured depth of the bit \[m\].
         bit_depth: f64,
-        /// Length of the whole string \[m\].
-        length: f64,
+        /// Largest bit depth \[m\].
+        deepest: f64,
     },
     /// The mode `ream` has no axial speed.
     #[error("the mode ream needs an axial speed in m/s, negative upwards")]

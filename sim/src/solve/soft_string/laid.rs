@@ -16,10 +16,10 @@ const SAME_DEPTH: f64 = 1e-9;
 impl SoftString {
     /// The string with its bit at a depth \[m\], shortened at its top.
     pub(super) fn laid(&self, bit_depth: f64) -> Result<LaidString<'_>, SoftStringError> {
-        if bit_depth > 0.0 && bit_depth <= self.length + DEPTH_ROUNDING {
+        if bit_depth > 0.0 && bit_depth <= self.deepest() + DEPTH_ROUNDING {
             Ok(LaidString::new(self, bit_depth))
         } else {
-            Err(SoftStringError::BitDepth { bit_depth, length: self.length })
+            Err(SoftStringError::BitDepth { bit_depth, deepest: self.deepest() })
         }
     }
 }

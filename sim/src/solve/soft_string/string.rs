@@ -16,7 +16,10 @@ pub struct SoftString {
     pub(super) path: WellPath,
     /// Parts from the top.
     pub(super) parts: Vec<Part>,
+    /// Length of the whole string \[m\].
     pub(super) length: f64,
+    /// Measured depth of the bit in the scenario \[m\].
+    bit_depth: f64,
     /// Depths at which hole sections begin \[m\].
     pub(super) section_tops: Vec<f64>,
     /// The hole above all sections, then that of each section.
@@ -45,7 +48,9 @@ impl SoftString {
         let effects = active_effects(scenario);
         let acceleration = gravity::acceleration(effects.gravity);
         let mud = scenario.mud.filter(|_| effects.buoyancy).map_or(0.0, |mud| mud.density);
-        let uniform = stretches(scenario)?;
+        let mut whole = scenario.clone();
+        whole.string.bit_depth = None;
+        let uniform = stretches(&whole)?;
         let joints = |index: usize| {
             let neighbours = [index.checked_sub(1), Some(index + 1)].into_iter().flatten();
             let joints = neighbours.filter_map(|index| uniform.get(index));
@@ -70,6 +75,7 @@ impl SoftString {
         Ok(Self {
             path: WellPath::new(&scenario.well)?,
             length: parts.last().map_or(0.0, |part| part.ends[1]),
+            bit_depth: scenario.string.depth_of_bit(),
             parts,
             section_tops: scenario.well.section.iter().map(|section| section.from).collect(),
             holes: std::iter::once(None)
@@ -80,9 +86,14 @@ impl SoftString {
         })
     }
 
-    /// Length of the whole string \[m\].
-    pub fn length(&self) -> f64 {
-        self.length
+    /// Measured depth of the bit in the scenario \[m\].
+    pub fn bit_depth(&self) -> f64 {
+        self.bit_depth
+    }
+
+    /// Measured depth \[m\] to which the bit can go: the length of the whole string, or the end of the survey.
+    pub fn deepest(&self) -> f64 {
+        self.path.length().min(self.length)
     }
 
     /// Friction factors of the hole above all sections and of each section.

@@ -36,7 +36,7 @@ fn pipe(survey: Vec<SurveyStation>, weight: f64) -> Scenario {
 }
 
 fn at(mode: DragMode, string: &SoftString, friction: f64) -> DragCase {
-    DragCase { mode, bit_depth: string.length(), friction: Some(friction) }
+    DragCase { mode, bit_depth: string.bit_depth(), friction: Some(friction) }
 }
 
 fn forces(scenario: &Scenario, mode: DragMode, friction: f64) -> DragResult {
@@ -89,7 +89,7 @@ fn the_two_station_example_has_its_forces() {
     let mut scenario = pipe(survey, 16.0 * POUND / FOOT);
     scenario.operation.weight_on_bit = 25_000.0 * POUND;
     let string = SoftString::new(&scenario).unwrap();
-    let laid = string.laid(string.length()).unwrap();
+    let laid = string.laid(string.bit_depth()).unwrap();
     for (mode, drag, tension, side_force) in [
         (DragMode::PickUp, 0.3, 30_987.0, 7_152.0),
         (DragMode::Rotate, 0.0, 28_841.0, 6_850.0),
@@ -163,7 +163,7 @@ fn a_build_section_has_the_tension_of_its_linear_equation() {
     let (weight, radius, mu, bit) = (284.0, 300.0, 0.25, 3e5);
     let scenario = pipe(vec![station(0.0, 0.0, 0.0), station(FRAC_PI_2 * radius, 90.0, 0.0)], weight);
     let string = SoftString::new(&scenario).unwrap();
-    let laid = string.laid(string.length()).unwrap();
+    let laid = string.laid(string.bit_depth()).unwrap();
     let load = weight * radius;
     // T = a cos theta + b sin theta + c exp(-mu theta), with a = -2 mu w R / (1 + mu^2), b = (mu^2 - 1) w R / (1 + mu^2).
     let (a, b) = (-2.0 * mu * load / (1.0 + mu * mu), (mu * mu - 1.0) * load / (1.0 + mu * mu));
@@ -320,7 +320,7 @@ fn volve_f12_agrees_with_two_independent_codes() {
     // Moved up and down with that weight on bit.
     assert_near(1e-3 * forces(&string, DragMode::Slide, 0.25).hook_load, 505.3, 5e-4);
     let up = DragMode::PickUp.motion(&string.operation, &DragSettings::default()).unwrap();
-    let top = string.laid(string.length()).unwrap().forces(&[0.25], &up, [-88_964.432, 0.0], |_, _| {});
+    let top = string.laid(string.bit_depth()).unwrap().forces(&[0.25], &up, [-88_964.432, 0.0], |_, _| {});
     assert_near(1e-3 * top.tension, 871.0, 5e-4);
 }
 

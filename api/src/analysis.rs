@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Display;
 
+use drillsweep_quantity::Quantity;
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Place, Quantity};
 use drillsweep_scenario::{NodeChoice, Scenario};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::modes::{ModeSearch, modes, modes_in};
@@ -113,10 +113,7 @@ fn strongest_lines(model: &Model, row: &Map<String, Value>) -> Vec<Line> {
     let window = [&STATISTICS_FROM, &STATISTICS_TO].map(|time| number(time.name).unwrap_or(0.0));
     let of_node = |choice: &NodeChoice| {
         let node = model.mesh.chosen_node(*choice)?;
-        let place = match choice {
-            NodeChoice::Node(node) => node.to_string(),
-            NodeChoice::Depth(depth) => Place::of_depth(*depth),
-        };
+        let place = choice.in_names();
         let lines = (1..).map_while(move |number_of_window| {
             Some(Line {
                 node: node + 1,

@@ -21,14 +21,18 @@ pub(crate) fn at_place(name: &str, places: &[Place], choice: &UnitChoice) -> Str
     let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);
     };
+    let elsewhere = Name { place: None, window: None, ..parsed };
+    let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
+    if let Some(height) = of_name.height() {
+        let unit = choice.depth();
+        return format!("{elsewhere} {} {} above the bit{window}", grouped(unit.of(height)), unit.symbol);
+    }
     let known = places.iter().find(|place| Some(place.node as usize) == of_name.node());
     let Some(depth) = of_name.depth().or(known.map(|place| place.measured_depth)) else {
         return words(name);
     };
     let depth = at_depth(depth, choice);
     let direction = known.map(|place| direction(parsed.quantity, place.low_side)).unwrap_or_default();
-    let elsewhere = Name { place: None, window: None, ..parsed };
-    let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
     format!("{elsewhere} at {depth}{direction}{window}")
 }
 
@@ -98,6 +102,11 @@ mod tests {
             ("u_11", Some(0.0), "u, node 11"),
             ("spread_orbit_radius_rms_10", Some(0.0), "spread of lateral vibration at 3 412 m MD"),
             ("line_amplitude_10_w2", None, "amplitude of the highest line at 3 412 m MD, window 2"),
+            (
+                "line_amplitude_12_5m_above_bit_w2",
+                None,
+                "amplitude of the highest line 12.5 m above the bit, window 2",
+            ),
             ("line_amplitude_57_7m_w2", None, "amplitude of the highest line at 57.7 m MD, window 2"),
         ] {
             assert_eq!(label(name, low_side), words);

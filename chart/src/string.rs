@@ -51,7 +51,8 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
         }
     }
     // Sums of lengths miss round numbers, and with them the last tick.
-    let depth = (1e6 * scenario.string.depth_of_bit()).round() / 1e6;
+    let bit = scenario.string.depth_of_bit();
+    let depth = (1e6 * bit).round() / 1e6;
     let mut strips = vec![[0.0, depth]];
     strips.extend(
         assembly.filter(|start| *start > 0.0 && depth - start < SHORT * depth).map(|start| [start, depth]),
@@ -64,11 +65,11 @@ pub fn string(scenario: &Scenario, system: UnitSystem) -> Drawing {
             .gauges()
             .iter()
             .map(|gauge| {
-                let hole = scenario.hole_at(gauge.measured_depth).diameter;
-                [unit.of(gauge.measured_depth), hole - 2.0 * gauge.clearance]
+                let hole = scenario.hole_at(gauge.depth(bit)).diameter;
+                [unit.of(gauge.depth(bit)), hole - 2.0 * gauge.clearance]
             })
             .collect(),
-        unbalance: scenario.string.unbalance.iter().map(|mass| unit.of(mass.measured_depth)).collect(),
+        unbalance: scenario.string.unbalance.iter().map(|mass| unit.of(mass.depth(bit))).collect(),
         strips: strips.into_iter().map(|ends| ends.map(|depth| unit.of(depth))).collect(),
         depth_label: with_unit(MEASURED_DEPTH.name, &system.into()),
     };

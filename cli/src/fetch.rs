@@ -229,9 +229,13 @@ fn points(
         }
         if has(tables::HISTORY.name) || has(tables::SPECTRA.name) {
             for place in point.summary.iter().flat_map(recorded_places) {
-                let (query, place) = match place.depth() {
-                    Some(depth) => (format!("depth={depth}"), format!("{depth}m")),
-                    None => {
+                let bit = point.scenario.string.depth_of_bit();
+                let (query, place) = match (place.depth(), place.height()) {
+                    (Some(depth), _) => (format!("depth={depth}"), format!("{depth}m")),
+                    (None, Some(height)) => {
+                        (format!("depth={}", bit - height), format!("{height}m-above-bit"))
+                    }
+                    (None, None) => {
                         let node = place.node().unwrap_or_default();
                         (format!("node={node}"), format!("node{node}"))
                     }

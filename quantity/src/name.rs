@@ -31,22 +31,35 @@ pub enum Place<'n> {
     Node(usize),
     /// The measured depth \[m\] for which it is recorded, on whatever mesh: `57_7m`.
     Depth(&'n str),
+    /// The distance above the bit \[m\] for which it is recorded: `12_5m_above_bit`.
+    AboveBit(&'n str),
 }
+
+/// End of a place above the bit in names.
+const ABOVE_BIT: &str = "_above_bit";
 
 impl<'n> Place<'n> {
     /// The number of the node; absent for one that is recorded for its depth.
     pub fn node(self) -> Option<usize> {
         match self {
             Place::Node(node) => Some(node),
-            Place::Depth(_) => None,
+            Place::Depth(_) | Place::AboveBit(_) => None,
         }
     }
 
-    /// The measured depth \[m\] for which the node is recorded; absent for one by number.
+    /// The measured depth \[m\] for which the node is recorded; absent for one by number or above the bit.
     pub fn depth(self) -> Option<f64> {
         match self {
-            Place::Node(_) => None,
-            Place::Depth(depth) => depth.trim_end_matches('m').replace('_', ".").parse().ok(),
+            Place::Depth(depth) => in_metres(depth),
+            Place::Node(_) | Place::AboveBit(_) => None,
+        }
+    }
+
+    /// The distance above the bit \[m\] for which the node is recorded; absent for others.
+    pub fn height(self) -> Option<f64> {
+        match self {
+            Place::AboveBit(height) => in_metres(height.trim_end_matches(ABOVE_BIT)),
+            Place::Node(_) | Place::Depth(_) => None,
         }
     }
 
@@ -56,8 +69,19 @@ impl<'n> Place<'n> {
         format!("{}m", depth.abs()).replace('.', "_")
     }
 
+    /// Distance above the bit \[m\] as names of columns have it: `12_5m_above_bit` for 12.5 m.
+    pub fn of_height(height: f64) -> String {
+        Self::of_depth(height) + ABOVE_BIT
+    }
+
     /// A name without the place at its end, and the place.
     fn take(name: &'n str) -> (&'n str, Option<Self>) {
+        if let Some(without) = name.strip_suffix(ABOVE_BIT) {
+            return match Self::take(without) {
+                (rest, Some(Place::Depth(_))) => (rest, Some(Place::AboveBit(&name[rest.len() + 1..]))),
+                _ => (name, None),
+            };
+        }
         let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
         let Some((rest, last)) = name.rsplit_once('_') else { return (name, None) };
         if is_number(last) {
@@ -73,13 +97,22 @@ impl<'n> Place<'n> {
     }
 }
 
-/// `node 49`, `57.7 m`.
+/// Metres of a text such as `57_7m`.
+fn in_metres(text: &str) -> Option<f64> {
+    text.trim_end_matches('m').replace('_', ".").parse().ok()
+}
+
+/// `node 49`, `57.7 m`, `12.5 m above the bit`.
 impl fmt::Display for Place<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Place::Node(node) => write!(formatter, "node {node}"),
             Place::Depth(depth) => {
                 write!(formatter, "{} m", depth.trim_end_matches('m').replace('_', "."))
+            }
+            Place::AboveBit(height) => {
+                let height = height.trim_end_matches(ABOVE_BIT).trim_end_matches('m').replace('_', ".");
+                write!(formatter, "{height} m above the bit")
             }
         }
     }
@@ -187,6 +220,7 @@ impl fmt::Display for Name<'_> {
         match self.place {
             Some(place @ Place::Node(_)) => write!(formatter, ", {place}")?,
             Some(place @ Place::Depth(_)) => write!(formatter, " at {place}")?,
+            Some(place @ Place::AboveBit(_)) => write!(formatter, " {place}")?,
             None => {}
         }
         match self.window {
@@ -235,12 +269,15 @@ mod tests {
             for variant in Variant::ALL {
                 let shallow = Place::of_depth(0.05);
                 let deep = Place::of_depth(3400.0);
+                let high = Place::of_height(12.5);
                 for (name, place, window) in [
                     (quantity.name.to_owned(), None, None),
                     (quantity.at_node(282), Some(Place::Node(282)), None),
                     (quantity.in_window("49", 2), Some(Place::Node(49)), Some(2)),
                     (quantity.at(&deep), Some(Place::Depth(&deep)), None),
                     (quantity.in_window(&shallow, 2), Some(Place::Depth(&shallow)), Some(2)),
+                    (quantity.at(&high), Some(Place::AboveBit(&high)), None),
+                    (quantity.in_window(&high, 1), Some(Place::AboveBit(&high)), Some(1)),
                 ] {
                     let expected = Name { quantity, detail: None, variant, place, window };
                     assert_eq!(Name::parse(&variant.of(&name)), Some(expected), "{name}");

@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::{DrillString, Scenario, Section};
+use drillsweep_quantity::Place;
+
+use crate::{DrillString, Gauge, NodeChoice, Scenario, Section, UnbalanceMass};
 
 /// Difference of depths that rounding makes \[m\].
 pub(crate) const SAME_DEPTH: f64 = 1e-6;
@@ -33,16 +35,30 @@ impl PlacedSection<'_> {
 }
 
 impl Scenario {
-    /// The same scenario written with the string that is in the hole: without the sections and pieces above it. `bit_depth` remains only if the
-    /// first piece is partly above.
+    /// The same scenario written with the string that is in the hole: without the sections and pieces above it, and with the measured depths of
+    /// gauges and unbalance masses. `bit_depth` remains only if the first piece is partly above.
     ///
     /// A bit depth that is not on the string, which validation refuses, leaves the whole string.
     pub fn in_hole(&self) -> Cow<'_, Self> {
-        if self.string.bit_depth.is_none() {
+        let string = &self.string;
+        let mut heights = string.gauges.iter().map(|gauge| gauge.above_bit);
+        let mut of_masses = string.unbalance.iter().map(|mass| mass.above_bit);
+        if string.bit_depth.is_none()
+            && heights.all(|above| above.is_none())
+            && of_masses.all(|above| above.is_none())
+        {
             return Cow::Borrowed(self);
         }
         let mut scenario = self.clone();
-        scenario.string.leave_out_above_hole();
+        let string = &mut scenario.string;
+        string.leave_out_above_hole();
+        let bit = string.depth_of_bit();
+        for gauge in string.gauges.iter_mut().filter(|gauge| gauge.above_bit.is_some()) {
+            (gauge.measured_depth, gauge.above_bit) = (Some(gauge.depth(bit)), None);
+        }
+        for mass in string.unbalance.iter_mut().filter(|mass| mass.above_bit.is_some()) {
+            (mass.measured_depth, mass.above_bit) = (Some(mass.depth(bit)), None);
+        }
         Cow::Owned(scenario)
     }
 }
@@ -107,6 +123,49 @@ impl DrillString {
     }
 }
 
+impl Gauge {
+    /// Gauge at a measured depth \[m\] with a clearance \[m\].
+    pub fn at(measured_depth: f64, clearance: f64) -> Self {
+        Self { measured_depth: Some(measured_depth), above_bit: None, clearance }
+    }
+
+    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN without a place, which validation refuses.
+    pub fn depth(&self, bit: f64) -> f64 {
+        depth(self.measured_depth, self.above_bit, bit)
+    }
+}
+
+impl UnbalanceMass {
+    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN without a place, which validation refuses.
+    pub fn depth(&self, bit: f64) -> f64 {
+        depth(self.measured_depth, self.above_bit, bit)
+    }
+}
+
+fn depth(measured_depth: Option<f64>, above_bit: Option<f64>, bit: f64) -> f64 {
+    measured_depth.or(above_bit.map(|above| bit - above)).unwrap_or(f64::NAN)
+}
+
+impl NodeChoice {
+    /// Measured depth \[m\] with the bit at a depth \[m\]; absent for a number.
+    pub fn depth(self, bit: f64) -> Option<f64> {
+        match self {
+            NodeChoice::Node(_) => None,
+            NodeChoice::Depth(depth) => Some(depth),
+            NodeChoice::AboveBit(above) => Some(bit - above),
+        }
+    }
+
+    /// The node in names of columns: `49`, `57_7m`, `12_5m_above_bit`.
+    pub fn in_names(self) -> String {
+        match self {
+            NodeChoice::Node(node) => node.to_string(),
+            NodeChoice::Depth(depth) => Place::of_depth(depth),
+            NodeChoice::AboveBit(above) => Place::of_height(above),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,6 +197,20 @@ mod tests {
         for refused in [0.0, -1.0, 200.1, f64::NAN] {
             assert_eq!(*with_bit_at(refused).in_hole(), whole, "{refused} m");
         }
+    }
+
+    #[test]
+    fn places_above_the_bit_move_with_it() {
+        let mut scenario = with_bit_at(120.0);
+        scenario.string.gauges = vec![Gauge { above_bit: Some(34.5), measured_depth: None, clearance: 1e-3 }];
+        scenario.string.unbalance.truncate(1);
+        (scenario.string.unbalance[0].measured_depth, scenario.string.unbalance[0].above_bit) =
+            (None, Some(0.0));
+        let found = scenario.in_hole();
+        assert_eq!(found.string.gauges, [Gauge::at(85.5, 1e-3)]);
+        assert_eq!(found.string.unbalance[0].measured_depth, Some(120.0));
+        scenario.string.bit_depth = None;
+        assert_eq!(scenario.in_hole().string.gauges, [Gauge::at(165.5, 1e-3)]);
     }
 
     #[test]
@@ -185,7 +258,7 @@ mod tests {
         scenario.string.sections[1].name = "pipe".to_owned();
         scenario.string.sections[1].blade_diameter = Some(0.2);
         scenario.string.sections[1].blade_above_end = Some(1.0);
-        let depths: Vec<f64> = scenario.gauges().iter().map(|gauge| gauge.measured_depth).collect();
+        let depths: Vec<f64> = scenario.gauges().iter().map(|gauge| gauge.depth(120.0)).collect();
         assert_eq!(depths, [8.5], "blades above the hole are left out");
         assert_eq!((scenario.string.component_at(0.0), scenario.string.component_at(9.6)), ("pipe", ""));
     }

@@ -145,7 +145,8 @@ pub struct DrillString {
     pub sections: Vec<Section>,
     /// Measured depth of the bit \[m\], above 0 and at most the length of all sections; absent means that length, all of the string. With less, only the lowest
     /// `bit_depth` metres of the string are in the hole: sections above the top of the hole are left out, the first one in it is cut, and
-    /// its tool joints stay where they are from the bit. Places that are given by measured depth stay in the hole and do not move with the bit.
+    /// its tool joints stay where they are from the bit. Gauges, unbalance masses and recorded nodes move with the bit if they are given by `above_bit`; by measured depth they stay
+    /// in the hole.
     #[serde(default)]
     pub bit_depth: Option<f64>,
     /// Points at which the clearance is given; none by default. Each has a node. Without them, and without blades of sections, stabilizers touch the
@@ -241,9 +242,14 @@ fn one() -> u32 {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gauge {
-    /// Measured depth \[m\], on the string. Within a twentieth of the target element length of another boundary it is moved there,
-    /// with a warning.
-    pub measured_depth: f64,
+    /// Measured depth \[m\], on the string in the hole; absent with `above_bit`. Within a twentieth of the target element length of another boundary
+    /// it is moved there, with a warning. It does not move with the bit.
+    #[serde(default)]
+    pub measured_depth: Option<f64>,
+    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of both is given. It moves with the
+    /// bit.
+    #[serde(default)]
+    pub above_bit: Option<f64>,
     /// Radial clearance j0 \[m\], above 0 and at most the clearance of the body; usual 1e-4 to 3e-3. Smaller, the node is
     /// held nearly as in a bearing, its contact chatters and steps become short; larger, the bottom-hole assembly tilts and whirls
     /// more freely.
@@ -254,9 +260,14 @@ pub struct Gauge {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnbalanceMass {
-    /// Measured depth \[m\], on the string; at the top node, which is held, a mass does nothing. Within a twentieth of the target
-    /// element length of another boundary it is moved there, with a warning.
-    pub measured_depth: f64,
+    /// Measured depth \[m\], on the string in the hole; absent with `above_bit`; at the top node, which is held, a mass does nothing. Within a twentieth
+    /// of the target element length of another boundary it is moved there, with a warning. It does not move with the bit.
+    #[serde(default)]
+    pub measured_depth: Option<f64>,
+    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of both is given. It moves with the
+    /// bit.
+    #[serde(default)]
+    pub above_bit: Option<f64>,
     /// Mass m_u \[kg\], 0 or more. Only its product with the radius counts, usually 0.01 to 1 kg m in one place; the string's own
     /// mass is unchanged. The force is that product times the square of the speed of rotation: too small leaves friction alone to
     /// excite whirl, too large throws the string from wall to wall.
@@ -538,7 +549,7 @@ pub struct Recording {
     pub snapshots: Option<Snapshots>,
 }
 
-/// One node, by number (1 is the top) or by measured depth (the nearest node).
+/// One node, by number (1 is the top), or the nearest one to a measured depth or to a distance above the bit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NodeChoice {
@@ -548,6 +559,9 @@ pub enum NodeChoice {
     /// Measured depth \[m\], on the string; the nearest node is taken, at most half an element away. It is the same place on every
     /// mesh.
     Depth(f64),
+    /// Distance above the lower end of the bit \[m\], on the string; the nearest node is taken. It is the same place on every mesh and
+    /// at every bit depth.
+    AboveBit(f64),
 }
 
 /// A half-open interval of simulated time \[from, to) \[s\].

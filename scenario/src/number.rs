@@ -124,8 +124,8 @@ numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
 numbers!(Section: length, outer_diameter, inner_diameter, mass_per_length, stiffness_outer_diameter, stiffness_inner_diameter,
     blade_diameter, blade_above_end, tool_joint, material; without name, kind, count, grade);
 numbers!(ToolJoint: length, outer_diameter, inner_diameter, material);
-numbers!(Gauge: measured_depth, clearance);
-numbers!(UnbalanceMass: measured_depth, mass, radius, phase_deg);
+numbers!(Gauge: measured_depth, above_bit, clearance);
+numbers!(UnbalanceMass: measured_depth, above_bit, mass, radius, phase_deg);
 numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pressure_drop, back_pressure;
     without regime, rotation_factor, viscosity_eccentricity);
 numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
@@ -199,13 +199,14 @@ impl Numbers for NodeChoice {
     fn find(&mut self, steps: &[Step<'_>]) -> Option<&mut f64> {
         match (self, steps.split_first()?) {
             (NodeChoice::Depth(depth), (Step::Field("depth"), rest)) => depth.find(rest),
+            (NodeChoice::AboveBit(above), (Step::Field("above_bit"), rest)) => above.find(rest),
             _ => None,
         }
     }
 
     fn each(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         match self {
-            NodeChoice::Depth(depth) => depth.each(visit),
+            NodeChoice::Depth(depth) | NodeChoice::AboveBit(depth) => depth.each(visit),
             NodeChoice::Node(_) => {}
         }
     }

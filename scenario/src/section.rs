@@ -312,10 +312,10 @@ impl Scenario {
                     let measured_depth =
                         top + f64::from(piece + 1) * section.length - section.blades_above_end();
                     let left = 0.5 * (self.hole_at(measured_depth).diameter - blade_diameter);
-                    Gauge { measured_depth, clearance: left.max(BLADE_CLEARANCE) }
+                    Gauge::at(measured_depth, left.max(BLADE_CLEARANCE))
                 };
                 let pieces = (0..section.count.min(MOST_BLADED_PIECES)).map(blades);
-                gauges.extend(pieces.filter(|blades| top >= 0.0 || blades.measured_depth >= 0.0));
+                gauges.extend(pieces.filter(|blades| top >= 0.0 || blades.measured_depth >= Some(0.0)));
             }
         }
         gauges
@@ -397,12 +397,11 @@ mod tests {
         (section.count, section.length) = (2, 10.0);
         section.blade_diameter = Some(0.2119);
         section.blade_above_end = Some(1.0);
-        let at = |depth, clearance| Gauge { measured_depth: depth, clearance };
+        let at = Gauge::at;
         let close = |found: &[Gauge], expected: &[Gauge]| {
             found.len() == expected.len()
                 && found.iter().zip(expected).all(|(a, b)| {
-                    (a.measured_depth - b.measured_depth).abs() < 1e-12
-                        && (a.clearance - b.clearance).abs() < 1e-15
+                    (a.depth(0.0) - b.depth(0.0)).abs() < 1e-12 && (a.clearance - b.clearance).abs() < 1e-15
                 })
         };
         assert!(close(&scenario.gauges(), &[at(top + 9.0, 2e-3), at(top + 19.0, 2e-3)]));

@@ -14,7 +14,7 @@ use crate::force::effect::active_effects;
 /// same numbers, however they are written.
 ///
 /// It is the scenario without its `name`, with the accuracy as integrator, step and promise, the material of every section and tool joint,
-/// the part of the string that is in the hole, the wall's defaults of a length, windows that follow the duration, the factor on the mesh `auto` that the accuracy chooses, and the names
+/// the part of the string that is in the hole with the depths of its gauges and masses, the wall's defaults of a length, windows that follow the duration, the factor on the mesh `auto` that the accuracy chooses, and the names
 /// of the active effects in place of the switches. Fields with their default value are left out, so that a new field with a default, or a new
 /// effect that old scenarios do not activate, changes no key. Numbers that are not finite, which validation refuses, are `null`.
 pub fn canonical_json(scenario: &Scenario) -> String {
@@ -658,6 +658,7 @@ mod tests {
             ".hydraulics.surface_case",
             ".operation.length_above",
             ".string.bit_depth",
+            ".string.gauges.above_bit",
             ".string.material.grade",
             ".string.sections.blade_above_end",
             ".string.sections.blade_diameter",
@@ -667,6 +668,7 @@ mod tests {
             ".string.sections.stiffness_inner_diameter",
             ".string.sections.stiffness_outer_diameter",
             ".string.sections.tool_joint.material.grade",
+            ".string.unbalance.above_bit",
             ".well.section.dynamic_friction",
             ".well.section.hole_diameter",
             ".well.section.static_friction",

@@ -214,6 +214,71 @@ fn bit_depths_off_the_string_or_below_the_survey_are_refused() {
 }
 
 #[test]
+fn places_above_the_bit_are_those_of_their_depths() {
+    let by_depth = preset("paper-200m")
+        .expect("shipped preset")
+        .with("recording.nodes", json!([{ "depth": 199.0 }, { "depth": 57.7 }]))
+        .expect("a field");
+    let mut by_height =
+        by_depth.with("recording.nodes", json!([{ "above_bit": 1.0 }, { "depth": 57.7 }])).expect("a field");
+    for gauge in &mut by_height.string.gauges {
+        (gauge.above_bit, gauge.measured_depth) = (gauge.measured_depth.map(|depth| 200.0 - depth), None);
+    }
+    for mass in &mut by_height.string.unbalance {
+        (mass.above_bit, mass.measured_depth) = (mass.measured_depth.map(|depth| 200.0 - depth), None);
+    }
+    validate(&by_height).expect("valid");
+    let [found, expected] = [&by_height, &by_depth].map(|scenario| Model::new(scenario).expect("valid"));
+    let depths = |model: &Model| model.mesh.depths();
+    for (found, expected) in depths(&found).iter().zip(depths(&expected)) {
+        assert!((found - expected).abs() < 1e-9);
+    }
+    let nodes = |model: &Model| -> Vec<Option<usize>> {
+        model.scenario.recording.nodes.iter().map(|node| model.mesh.chosen_node(*node)).collect()
+    };
+    assert_eq!(nodes(&found), nodes(&expected));
+    let unbalance = |model: &Model| -> Vec<usize> {
+        (0..model.node_count()).filter(|node| !model.mesh.nodes[*node].unbalance.is_empty()).collect()
+    };
+    assert_eq!(unbalance(&found), unbalance(&expected));
+    // With the bit higher up, they stay at their distance from it.
+    let moved = Model::new(&with_bit_at(&by_height, 195.0)).expect("valid");
+    let bit_to_lowest = |model: &Model| {
+        let gauges = model.mesh.nodes.iter().filter(|node| node.is_gauge);
+        gauges.map(|node| model.mesh.length() - node.measured_depth).collect::<Vec<_>>()
+    };
+    for (moved, found) in bit_to_lowest(&moved).iter().zip(bit_to_lowest(&found)) {
+        assert!((moved - found).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_place_is_given_in_one_way_and_on_the_string() {
+    let paths = |path: &str, value: serde_json::Value| -> Vec<(String, String)> {
+        let scenario = preset("paper-200m").expect("shipped preset").with(path, value).expect("a field");
+        let problems = validate(&scenario).err().map(|problems| problems.0).unwrap_or_default();
+        problems.into_iter().map(|problem| (problem.path, problem.message)).collect()
+    };
+    let both = paths("string.gauges[0].above_bit", json!(1.0));
+    assert_eq!(both.len(), 1);
+    assert_eq!(both[0].0, "string.gauges[0].above_bit");
+    assert!(both[0].1.contains("not both"), "{both:?}");
+    let neither = paths("string.unbalance[2].measured_depth", json!(null));
+    assert_eq!(neither.len(), 1);
+    assert_eq!(neither[0].0, "string.unbalance[2]");
+    assert!(neither[0].1.contains("either measured_depth or above_bit"), "{neither:?}");
+    let above = paths("string.gauges[0]", json!({ "measured_depth": null, "above_bit": 200.5 }));
+    assert_eq!(above[0].0, "string.gauges[0].above_bit");
+    assert!(above[0].1.contains("0 to 200 m"), "{above:?}");
+    let recorded = paths("recording.nodes[0]", json!({ "above_bit": -1.0 }));
+    assert_eq!(recorded[0].0, "recording.nodes[0].above_bit");
+    // By measured depth a place does not move with the bit, and may be below it.
+    let scenario = with_bit_at(&preset("paper-200m").expect("shipped preset"), 180.0);
+    let problems = validate(&scenario).expect_err("masses below the bit").0;
+    assert!(problems.iter().any(|problem| problem.message.ends_with("above_bit moves with the bit")));
+}
+
+#[test]
 fn a_string_that_continues_has_the_pipe_of_its_cut_above_it() {
     let mut scenario = vertical();
     scenario.operation.top = TopCondition::Continues;

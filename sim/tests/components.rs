@@ -138,7 +138,7 @@ fn blades_are_the_gauges_that_they_stand_for() {
             let measured_depth =
                 if section.kind == SectionKind::Bit { bottom } else { top + 0.5 * section.length };
             let clearance = (0.5 * (listed.well.hole_diameter - diameter)).max(1e-4);
-            listed.string.gauges.push(Gauge { measured_depth, clearance });
+            listed.string.gauges.push(Gauge::at(measured_depth, clearance));
         }
         top = bottom;
     }

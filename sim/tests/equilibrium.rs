@@ -45,7 +45,7 @@ fn section(scenario: &Scenario) -> BeamSection {
 fn collars_lie_on_the_low_side_up_to_dawson_and_paslays_load() {
     for share in [0.84, 0.9, 0.95] {
         let mut scenario = horizontal(400.0, [0.159, 0.071], 4.0);
-        scenario.string.gauges.push(Gauge { measured_depth: 400.0, clearance: 1e-4 });
+        scenario.string.gauges.push(Gauge::at(400.0, 1e-4));
         let (beam, clearance) = (section(&scenario), 0.5 * (scenario.well.hole_diameter - 0.159));
         let weight = beam.density * beam.area * GRAVITY;
         scenario.operation.weight_on_bit =

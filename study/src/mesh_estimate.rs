@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use drillsweep_scenario::{NodeChoice, Scenario, WallLaw};
+use drillsweep_scenario::{Scenario, WallLaw};
 use serde::{Deserialize, Serialize};
 
 use super::summary::OrbitSummary;
@@ -91,9 +91,9 @@ impl MeshEstimate {
             worst.filter(|error| *error <= LARGEST_ORBIT_ERROR)
         });
         let recorded = model.scenario.recording.nodes.iter().filter_map(|&choice| {
-            let depth = match choice {
-                NodeChoice::Depth(depth) => depth,
-                NodeChoice::Node(_) => model.mesh.nodes[model.mesh.chosen_node(choice)?].measured_depth,
+            let depth = match choice.depth(model.mesh.length()) {
+                Some(depth) => depth,
+                None => model.mesh.nodes[model.mesh.chosen_node(choice)?].measured_depth,
             };
             let radii = [&own, &half, &quarter].map(|rest| {
                 let [u, v] = rest.position.at(depth);

@@ -213,8 +213,13 @@ fn orbits_of_a_turning_pipe(elements: u32) -> Vec<f64> {
 /// The pipe with a mass \[kg\] off its axis.
 fn turning_pipe(elements: u32, mass: f64) -> Scenario {
     let mut scenario = pipe_on_the_low_side(WallLaw::PerLength, 2e5, elements);
-    scenario.string.unbalance =
-        vec![UnbalanceMass { measured_depth: 6.0, mass, radius: 0.05, phase_deg: 0.0 }];
+    scenario.string.unbalance = vec![UnbalanceMass {
+        measured_depth: Some(6.0),
+        above_bit: None,
+        mass,
+        radius: 0.05,
+        phase_deg: 0.0,
+    }];
     scenario.operation.rotation_speed_rpm = 120.0;
     scenario.damping = RayleighDamping { mass_proportional: 6.0, stiffness_proportional: 3e-5 };
     scenario.contact.damping_per_length = Some(0.0);

@@ -205,7 +205,7 @@ fn without_play(
     let mut scenario = preset(name).expect("shipped preset");
     scenario.mesh = preset("paper-200m").expect("shipped preset").mesh;
     scenario.string.gauges =
-        [123.5, 165.5, 180.0, 200.0].map(|measured_depth| Gauge { measured_depth, clearance: 1e-9 }).to_vec();
+        [123.5, 165.5, 180.0, 200.0].map(|measured_depth| Gauge::at(measured_depth, 1e-9)).to_vec();
     (scenario.contact.stiffness, scenario.contact.damping) = (1e9, damping);
     if !friction {
         (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use drillsweep_quantity::columns::*;
-use drillsweep_quantity::{Place, Quantity, Variant};
+use drillsweep_quantity::{Quantity, Variant};
 use drillsweep_scenario::{NodeChoice, OrbitOutputs, Outputs, TimeWindow};
 use drillsweep_sim::math::signal::{FullSpectrum, Window, full_spectrum, sample_range};
 use drillsweep_sim::solve::model::Model;
@@ -119,7 +119,7 @@ pub(crate) fn summary_row(
     row.0.extend(transient_row(transient).0);
     for orbit in &transient.orbits {
         if let Some(OrbitInterval { orbit_radius_rms, radius_deviation }) = orbit.interval {
-            let name = |of: &Quantity| Variant::Confidence.of(&of.at(&place(orbit.recorded_as)));
+            let name = |of: &Quantity| Variant::Confidence.of(&of.at(&orbit.recorded_as.in_names()));
             row.put(name(&ORBIT_RADIUS_RMS), orbit_radius_rms);
             row.put(name(&ORBIT_RADIUS_DEVIATION), radius_deviation);
         }
@@ -148,19 +148,11 @@ pub(crate) fn summary_row(
     row
 }
 
-/// A recorded node in names of columns: its number, or the depth for which it is recorded.
-fn place(choice: NodeChoice) -> String {
-    match choice {
-        NodeChoice::Node(node) => node.to_string(),
-        NodeChoice::Depth(depth) => Place::of_depth(depth),
-    }
-}
-
 /// The scalars of one run in time.
 fn transient_row(transient: &TransientSummary) -> Row {
     let mut row = settling_row(transient.simulated_time, &transient.settling);
     for orbit in &transient.orbits {
-        let place = place(orbit.recorded_as);
+        let place = orbit.recorded_as.in_names();
         row.put(ORBIT_OFFSET.at(&place), orbit.offset);
         row.put(ORBIT_MEAN_RADIUS.at(&place), orbit.mean_radius);
         row.put(ORBIT_LARGEST_RADIUS.at(&place), orbit.largest_radius);
@@ -173,7 +165,7 @@ fn transient_row(transient: &TransientSummary) -> Row {
     for spectrum in &transient.spectra {
         window_number = if spectrum.node == node_before { window_number + 1 } else { 1 };
         node_before = spectrum.node;
-        let place = place(spectrum.recorded_as);
+        let place = spectrum.recorded_as.in_names();
         row.put(BAND_RMS.in_window(&place, window_number), spectrum.band_rms);
         if let Some(line) = spectrum.lines.first() {
             row.put(LINE_FREQUENCY_HZ.in_window(&place, window_number), line.frequency_hz);
@@ -257,7 +249,7 @@ fn loads_row(loads: &LoadSummary, orbits: &[OrbitSummary]) -> Row {
         else {
             continue;
         };
-        let place = place(orbit.recorded_as);
+        let place = orbit.recorded_as.in_names();
         row.put(LATERAL_ACCELERATION_RMS.at(&place), node.lateral_acceleration.rms);
         row.put(LATERAL_ACCELERATION_PEAK.at(&place), node.lateral_acceleration.peak.value);
         row.put(AXIAL_ACCELERATION_PEAK.at(&place), node.axial_acceleration.peak.value);

@@ -1,7 +1,7 @@
 // Points of a comparison: loaded from the link, told from each other, with the depths of their recorded nodes.
 
 import { get, Problem } from "../data/api.js";
-import { nodeInLink } from "../data/motion-requests.js";
+import { depthOfRecorded, nodeInLink } from "../data/motion-requests.js";
 import { sayParameters } from "../data/units.js";
 import { DASHES, LINES } from "../draw/plots.js";
 
@@ -127,10 +127,11 @@ export async function recordedDepths(points, signal) {
     points.map(async ({ detail, path }) => {
       /** @type {any[]} */
       const nodes = detail.summary ? detail.scenario.recording.nodes : [];
+      const placed = (/** @type {any} */ entry) => depthOfRecorded(entry, detail.scenario.string);
       const named = (/** @type {any} */ entry, /** @type {number} */ depth) =>
         /** @type {[string, number]} */ ([nodeInLink(entry), depth]);
       if (!nodes.some((entry) => entry.node !== undefined))
-        return nodes.map((entry) => named(entry, entry.depth));
+        return nodes.map((entry) => named(entry, placed(entry) ?? NaN));
       try {
         const { columns } = await get(
           `${path}/statics`,
@@ -138,7 +139,7 @@ export async function recordedDepths(points, signal) {
           signal,
         );
         return nodes.map((entry) =>
-          named(entry, entry.depth ?? columns.measured_depth[columns.node.indexOf(entry.node)]),
+          named(entry, placed(entry) ?? columns.measured_depth[columns.node.indexOf(entry.node)]),
         );
       } catch (error) {
         // Without its equilibrium it has no motion either.

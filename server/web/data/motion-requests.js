@@ -90,13 +90,27 @@ export function rotationTable(scenario, query, node) {
   ];
 }
 
+/** A recorded node, by number, measured depth or distance above the bit [m]. @typedef {{node?: number, depth?: number, above_bit?: number}} RecordedNode */
+
 /**
- * Name of a recorded node in links: its number, or the depth for which it is recorded.
- * @param {{node?: number, depth?: number}} recorded
- * @returns {string} such as `49` or `57.7m`
+ * Name of a recorded node in links: its number, or the depth or distance above the bit for which it is recorded.
+ * @param {RecordedNode} recorded
+ * @returns {string} such as `49`, `57.7m` or `12.5m_above_bit`
  */
-export function nodeInLink({ node, depth }) {
-  return node !== undefined ? String(node) : `${depth}m`;
+export function nodeInLink({ node, depth, above_bit }) {
+  if (node !== undefined) return String(node);
+  return above_bit !== undefined ? `${above_bit}m_above_bit` : `${depth}m`;
+}
+
+/**
+ * Measured depth for which a node is recorded [m]; undefined for one by number.
+ * @param {RecordedNode} recorded
+ * @param {{bit_depth?: number | null, sections: {count?: number, length: number}[]}} string
+ */
+export function depthOfRecorded({ depth, above_bit }, string) {
+  if (above_bit === undefined) return depth;
+  const whole = string.sections.reduce((sum, { count = 1, length }) => sum + count * length, 0);
+  return (string.bit_depth ?? whole) - above_bit;
 }
 
 /**
@@ -115,10 +129,12 @@ export function unrecordedNode({ recording: { nodes } }, query) {
  * @param {URLSearchParams} query of the link
  * @returns {{node: number} | {depth: number, nearest: true}}
  */
-export function selectedNode({ recording: { nodes } }, query) {
+export function selectedNode({ recording: { nodes }, string }, query) {
   const named = nodes.find((/** @type {any} */ one) => nodeInLink(one) === query.get("node"));
   const asked = named ?? nodes[0];
-  return asked?.node !== undefined ? { node: asked.node } : { depth: asked?.depth, nearest: true };
+  return asked?.node !== undefined
+    ? { node: asked.node }
+    : { depth: asked && depthOfRecorded(asked, string), nearest: true };
 }
 
 /**

@@ -1,6 +1,6 @@
 // Statistics of a window of a node's motion, and what verifying a sweep says of them.
 
-import { verifiedWindow } from "./motion-requests.js";
+import { depthOfRecorded, nodeInLink, verifiedWindow } from "./motion-requests.js";
 
 /** Statistics by their names in the service, with those on the page. @type {[string, string][]} */
 export const STATISTICS = [
@@ -51,19 +51,18 @@ export function spectrumWindow(point, window) {
 }
 
 /**
- * Suffix of a recorded node in the names of a summary's columns: its number, or the depth for which it is recorded.
+ * Suffix of a recorded node in the names of a summary's columns: its number, or the place for which it is recorded.
  * @param {any} scenario
  * @param {number} node as the service numbers it
  * @param {number} depth its measured depth [m]
  * @returns {string}
  */
-export function recordedAs({ recording: { nodes } }, node, depth) {
-  const depths = nodes.flatMap((/** @type {any} */ one) => (one.depth === undefined ? [] : [one.depth]));
-  if (!depths.length || nodes.some((/** @type {any} */ one) => one.node === node)) return String(node);
-  const nearest = depths.reduce((/** @type {number} */ a, /** @type {number} */ b) =>
-    Math.abs(b - depth) < Math.abs(a - depth) ? b : a,
-  );
-  return `${nearest}m`.replace(".", "_");
+export function recordedAs({ recording: { nodes }, string }, node, depth) {
+  const places = nodes.filter((/** @type {any} */ one) => one.node === undefined);
+  if (!places.length || nodes.some((/** @type {any} */ one) => one.node === node)) return String(node);
+  const off = (/** @type {any} */ one) => Math.abs((depthOfRecorded(one, string) ?? NaN) - depth);
+  const nearest = places.reduce((/** @type {any} */ a, /** @type {any} */ b) => (off(b) < off(a) ? b : a));
+  return nodeInLink(nearest).replace(".", "_");
 }
 
 /**

@@ -27,13 +27,13 @@ const LARGEST = /^largest_(.+)$/;
 const VARIANT = /^(spread|ensemble_mean|confidence|reference|bias)_(.+)$/;
 /** Ratios that are shown in per cent. */
 const PER_CENT = /(^|_)error(_|$)|^relative_spread$|_spread$/;
-// A node by its number or by its depth in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`.
-const PLACE = /(?:_(\d+(?:_\d+)?m)|_(\d+))?(?:_w(\d+))?$/;
+// A node by its number, by its depth or by its distance above the bit in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`, `_12_5m_above_bit`.
+const PLACE = /(?:_(\d+(?:_\d+)?)m(_above_bit)?|_(\d+))?(?:_w(\d+))?$/;
 
 /**
  * Parses a name: a column, with the node, window and variant that its name may carry, or a path of the scenario.
  * @param {string} name
- * @returns {{entry: Entry | undefined, key?: string, depth?: string, node?: string, window?: string, variant?: string}}
+ * @returns {{entry: Entry | undefined, key?: string, depth?: string, height?: string, node?: string, window?: string, variant?: string}}
  */
 function parse(name) {
   if (name.includes(".")) return { entry: registry[name.replace(/\[\d+\]/g, "")] };
@@ -48,9 +48,9 @@ function parse(name) {
     entry: registry[key],
     key,
     variant: variant?.[1],
-    depth: place?.[1]?.slice(0, -1).replace("_", "."),
-    node: place?.[2],
-    window: place?.[3],
+    [place?.[2] ? "height" : "depth"]: place?.[1]?.replace("_", "."),
+    node: place?.[3],
+    window: place?.[4],
   };
 }
 
@@ -59,12 +59,13 @@ function parse(name) {
  * @param {string} name
  */
 export function label(name) {
-  const { entry, depth, node, window, variant } = parse(name);
+  const { entry, depth, height, node, window, variant } = parse(name);
   if (!entry) return name.replaceAll("_", " ");
   const words = entry.label;
   if (variant === "largest") return `largest ${words} of all recorded nodes`;
   const parts = [variant ? `${variant.replaceAll("_", " ")} of ${words}` : words];
   if (depth) parts[0] += ` at ${depth} m`;
+  if (height) parts[0] += ` ${height} m above the bit`;
   if (node) parts.push(`node ${node}`);
   if (window) parts.push(`window ${window}`);
   return parts.join(", ");
@@ -73,10 +74,11 @@ export function label(name) {
 /**
  * Node that a column is of, as links name it.
  * @param {string} name of a column
- * @returns {string} such as `49` or `57.7m`; empty of a column that is of no node
+ * @returns {string} such as `49`, `57.7m` or `12.5m_above_bit`; empty of a column that is of no node
  */
 export function nodeOfColumn(name) {
-  const { node, depth } = parse(name);
+  const { node, depth, height } = parse(name);
+  if (height) return `${height}m_above_bit`;
   return node ?? (depth === undefined ? "" : `${depth}m`);
 }
 

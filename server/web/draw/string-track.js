@@ -1,5 +1,6 @@
 // The string over depth as a narrow picture: pipe, tool joints, collars, stabilizers and the bit, some by name.
 
+import { depthOfRecorded } from "../data/motion-requests.js";
 import { say, shown } from "../data/units.js";
 import { inks, LINES } from "./plots.js";
 
@@ -116,9 +117,9 @@ export function trackAxis(part) {
 }
 
 /** Depths of recorded nodes [m]. @param {any} scenario @param {any} statics columns of the equilibrium */
-export function recordedAt({ recording }, statics) {
-  return recording.nodes.flatMap((/** @type {{node?: number, depth?: number}} */ { node, depth }) => {
-    const found = depth ?? statics?.measured_depth[statics.node.indexOf(node)];
+export function recordedAt({ recording, string }, statics) {
+  return recording.nodes.flatMap((/** @type {import("../data/motion-requests.js").RecordedNode} */ one) => {
+    const found = depthOfRecorded(one, string) ?? statics?.measured_depth[statics.node.indexOf(one.node)];
     return found === undefined ? [] : [found];
   });
 }

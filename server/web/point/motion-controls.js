@@ -1,9 +1,9 @@
 // Controls of the motion of a node.
 
-import { nodeInLink, rangesOf } from "../data/motion-requests.js";
+import { depthOfRecorded, nodeInLink, rangesOf } from "../data/motion-requests.js";
 import { componentAt } from "../data/string-parts.js";
-import { say } from "../data/units.js";
 import { choice, fill, h } from "../ui/dom.js";
+import { sayPlace } from "./part.js";
 
 /** @typedef {import("./motion-choices.js").MotionChoices} MotionChoices */
 
@@ -56,10 +56,10 @@ export class MotionControls {
       h("label", { class: "field" }, h("span", {}, `${name} [s]`), box);
     const set = (/** @type {string} */ name) => (/** @type {string} */ value) => this.#set(name, value);
     const { string } = point.scenario;
-    const atDepth = (/** @type {number} */ depth) =>
-      [say("measured_depth", depth), componentAt(string, depth)].filter(Boolean).join(", ");
+    const atPlace = (/** @type {import("../data/motion-requests.js").RecordedNode} */ node) =>
+      [sayPlace(node), componentAt(string, depthOfRecorded(node, string) ?? NaN)].filter(Boolean).join(", ");
     const nodeName = (/** @type {any} */ node) =>
-      node.node !== undefined ? `${node.node}${depthOf(node.node)}` : atDepth(node.depth);
+      node.node !== undefined ? `${node.node}${depthOf(node.node)}` : atPlace(node);
     fill(
       this.element,
       choice(

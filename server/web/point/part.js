@@ -1,6 +1,7 @@
 // Common to the views of a point.
 
 import { nodeInLink, unrecordedNode } from "../data/motion-requests.js";
+import { say } from "../data/units.js";
 
 /**
  * Data and callbacks for a view of a point.
@@ -35,10 +36,20 @@ import { nodeInLink, unrecordedNode } from "../data/motion-requests.js";
 export function sayUnrecorded(scenario, query) {
   const asked = unrecordedNode(scenario, query);
   if (!asked) return "";
-  const words = (/** @type {string} */ name) =>
-    name.endsWith("m") ? `at ${name.slice(0, -1)} m` : `node ${name}`;
+  const words = (/** @type {string} */ name) => {
+    const [, metres, above] = /^(.+)m(_above_bit)?$/.exec(name) ?? [];
+    if (metres === undefined) return `node ${name}`;
+    return above ? `${metres} m above the bit` : `at ${metres} m`;
+  };
   const recorded = scenario.recording.nodes.map((/** @type {any} */ node) => words(nodeInLink(node)));
   return `This point did not record ${/^\d/.test(asked) ? words(asked) : asked}. It recorded ${recorded.join(", ")}: choose one of them.`;
+}
+
+/** Place for which a node is recorded, in words. @param {import("../data/motion-requests.js").RecordedNode} recorded */
+export function sayPlace({ depth, above_bit }) {
+  return above_bit === undefined
+    ? say("measured_depth", depth)
+    : `${say("measured_depth", above_bit)} above the bit`;
 }
 
 /** Choices that other views of the point, and other points, take over. */

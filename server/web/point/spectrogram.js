@@ -10,7 +10,7 @@ import { TimeLine } from "../draw/time-line.js";
 import { choice, fill, h } from "../ui/dom.js";
 import { attend } from "../ui/notices.js";
 import { pythonNode } from "../ui/snippets.js";
-import { sayUnrecorded } from "./part.js";
+import { sayPlace, sayUnrecorded } from "./part.js";
 
 /** Frequencies up to which spectrograms are shown [Hz]. */
 export const RANGES = ["5", "10", "20", "50", "100"];
@@ -21,16 +21,16 @@ const DEPTH = 1e-3;
 /** Choices of a spectrogram, as the link holds them. */
 class Choices {
   #query;
-  #nodes;
+  #scenario;
 
-  /** @param {URLSearchParams} query @param {any[]} nodes that were recorded */
-  constructor(query, nodes) {
+  /** @param {URLSearchParams} query @param {any} scenario */
+  constructor(query, scenario) {
     this.#query = query;
-    this.#nodes = nodes;
+    this.#scenario = scenario;
   }
 
   get node() {
-    return this.#query.get("node") ?? nodeInLink(this.#nodes[0]);
+    return this.#query.get("node") ?? nodeInLink(this.#scenario.recording.nodes[0]);
   }
 
   /** Highest frequency [Hz]. */
@@ -50,7 +50,7 @@ class Choices {
   /** Query of the table. */
   asks() {
     return {
-      ...selectedNode({ recording: { nodes: this.#nodes } }, this.#query),
+      ...selectedNode(this.#scenario, this.#query),
       range_hz: Number(this.range),
       ...(this.length ? { window_s: Number(this.length) } : {}),
     };
@@ -70,7 +70,7 @@ class Choices {
 export function spectrogram(context) {
   /** @type {any[]} */
   const nodes = context.point.scenario.recording.nodes;
-  const choices = new Choices(context.query, nodes);
+  const choices = new Choices(context.query, context.point.scenario);
   const place = canvas("Spectrogram of the node", "spectrogram", "tall");
   new TimeLine(place, context.time, context.signal);
   const caption = h("figcaption", {});
@@ -145,10 +145,7 @@ function controlsPart(nodes, choices, set) {
   return [
     choice(
       "Node",
-      nodes.map((node) => [
-        nodeInLink(node),
-        node.node !== undefined ? String(node.node) : say("measured_depth", node.depth),
-      ]),
+      nodes.map((node) => [nodeInLink(node), node.node !== undefined ? String(node.node) : sayPlace(node)]),
       choices.node,
       set("node"),
     ),

@@ -14,11 +14,11 @@ const OUTPUTS = [
   ["spectra", "spectra, no histories"],
   ["summary", "its row of the table only"],
 ];
-/** A node: its number, or its depth with a unit. */
-const NODE = /^([\d.]+)\s*(m|ft)?$/;
+/** A node: its number, or its depth or distance above the bit with a unit. */
+const NODE = /^([\d.]+)\s*(?:(m|ft)(\s+above(?: the)? bit)?)?$/;
 const FOOT = 0.3048;
 
-/** @typedef {{node: number} | {depth: number}} Node */
+/** @typedef {{node: number} | {depth: number} | {above_bit: number}} Node */
 
 /** Nodes of a text such as `49, 57.7 m`; null if it has anything else. @param {string} text @returns {Node[] | null} */
 export function nodesOf(text) {
@@ -27,10 +27,12 @@ export function nodesOf(text) {
     .map((word) => word.trim())
     .filter(Boolean);
   const nodes = words.map((word) => {
-    const [, number, unit] = NODE.exec(word) ?? [];
+    const [, number, unit, above] = NODE.exec(word) ?? [];
     if (number === undefined) return null;
-    if (unit)
-      return { depth: unit === "ft" ? Number((Number(number) * FOOT).toPrecision(15)) : Number(number) };
+    if (unit) {
+      const metres = unit === "ft" ? Number((Number(number) * FOOT).toPrecision(15)) : Number(number);
+      return above ? { above_bit: metres } : { depth: metres };
+    }
     return Number.isInteger(Number(number)) ? { node: Number(number) } : null;
   });
   return nodes.includes(null) ? null : /** @type {Node[]} */ (nodes);
@@ -38,7 +40,12 @@ export function nodesOf(text) {
 
 /** @param {Node[]} nodes */
 export function nodesText(nodes) {
-  return nodes.map((node) => ("node" in node ? String(node.node) : `${node.depth} m`)).join(", ");
+  return nodes
+    .map((node) => {
+      if ("above_bit" in node) return `${node.above_bit} m above bit`;
+      return "node" in node ? String(node.node) : `${node.depth} m`;
+    })
+    .join(", ");
 }
 
 /** Outputs of a request, by a choice with fields for histories in part. */
@@ -70,7 +77,8 @@ export class Kept {
   get outputs() {
     if (this.#way !== PART) return this.#way || undefined;
     const nodes = nodesOf(this.#nodes);
-    if (!nodes) throw new Unreadable("/outputs", "Nodes are numbers or depths, such as 49, 57.7 m");
+    if (!nodes)
+      throw new Unreadable("/outputs", "Nodes are numbers or depths, such as 49, 57.7 m or 12 m above bit");
     const { nodes: _, ...part } = this.#part;
     return { orbits: nodes.length ? { nodes, ...part } : part };
   }

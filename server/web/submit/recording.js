@@ -23,7 +23,7 @@ const WAYS = [
   ["fixed", "fixed"],
 ];
 
-/** @typedef {{node: number} | {depth: number}} Node */
+/** @typedef {{node: number} | {depth: number} | {above_bit: number}} Node */
 /** @typedef {{from: number, to: number}} Window */
 
 /**
@@ -33,7 +33,10 @@ const WAYS = [
 export function isRecording({ name, values }) {
   const value = read(values);
   const isList = (/** @type {(one: any) => boolean} */ fits) => Array.isArray(value) && value.every(fits);
-  if (name === NODES) return isList((one) => typeof one?.depth === "number" || typeof one?.node === "number");
+  if (name === NODES)
+    return isList((one) =>
+      [one?.depth, one?.node, one?.above_bit].some((place) => typeof place === "number"),
+    );
   if (name === WINDOWS)
     return value === null || isList((one) => typeof one?.from === "number" && typeof one?.to === "number");
   if (name === ORBIT_WINDOW) return wayOf(value) !== undefined;
@@ -149,23 +152,28 @@ export class Recording {
         nodes.map((one, index) => (index === at ? node : one)),
       );
     const lines = nodes.map((node, at) => {
-      const isDepth = "depth" in node;
-      const value = isDepth ? node.depth : node.node;
+      const [[way, value]] = /** @type {[string, number][]} */ (Object.entries(node));
+      const nodeBy = (/** @type {string} */ chosen, /** @type {number} */ place) =>
+        /** @type {Node} */ ({ [chosen]: chosen === "node" ? Math.round(place) : place });
+      const { symbol } = inputUnit("measured_depth");
+      const ways = [
+        ["depth", `at depth [${symbol}]`],
+        ["above_bit", `above the bit [${symbol}]`],
+        ["node", "by number"],
+      ];
       const kind = h(
         "select",
         {
           "aria-label": `Kind of node ${at + 1}`,
-          onchange: () => put(at, kind.value === "depth" ? { depth: value } : { node: Math.round(value) }),
+          onchange: () => put(at, nodeBy(kind.value, value)),
         },
-        h(
-          "option",
-          { value: "depth", selected: isDepth },
-          `at depth [${inputUnit("measured_depth").symbol}]`,
-        ),
-        h("option", { value: "node", selected: !isDepth }, "by number"),
+        ways.map(([name, text]) => h("option", { value: name, selected: name === way }, text)),
       );
-      const box = this.#number(`Node ${at + 1}`, isDepth ? "measured_depth" : "node", value, (entered) =>
-        put(at, isDepth ? { depth: entered } : { node: entered }),
+      const box = this.#number(
+        `Node ${at + 1}`,
+        way === "node" ? "node" : "measured_depth",
+        value,
+        (entered) => put(at, nodeBy(way, entered)),
       );
       const remove = () =>
         this.#set(

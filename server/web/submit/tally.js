@@ -72,7 +72,8 @@ const TABLES = [
     heading: "Gauges: further blades by depth and clearance",
     one: "gauge",
     columns: [
-      { name: "measured_depth", text: "Measured depth" },
+      { name: "measured_depth", text: "Measured depth", isOptional: true },
+      { name: "above_bit", text: "or above the bit", isOptional: true },
       { name: "clearance", text: "Radial clearance" },
     ],
     proposed: { measured_depth: 0, clearance: 1e-4 },
@@ -82,7 +83,8 @@ const TABLES = [
     heading: "Unbalance masses",
     one: "mass",
     columns: [
-      { name: "measured_depth", text: "Measured depth" },
+      { name: "measured_depth", text: "Measured depth", isOptional: true },
+      { name: "above_bit", text: "or above the bit", isOptional: true },
       { name: "mass", text: "Mass" },
       { name: "radius", text: "Distance from the axis" },
       { name: "phase_deg", text: "Phase", isOptional: true, isSigned: true },

@@ -12,7 +12,7 @@
 //! `study/tests/contact_mesh.rs` compares positions of rest in three wells with much finer meshes, `sim/tests/real_well.rs` those of a string of
 //! 3,438 m, and docs/accuracy.md has settled orbits.
 
-use drillsweep_scenario::{NodeChoice, Scenario, Section};
+use drillsweep_scenario::{Scenario, Section};
 
 use crate::string::beam::BeamSection;
 
@@ -49,10 +49,7 @@ pub(super) fn targets(section: &Section, scenario: &Scenario, piece: [f64; 2]) -
 fn is_far(scenario: &Scenario, [top, bottom]: [f64; 2]) -> bool {
     let bit = scenario.string.depth_of_bit();
     // A node that is chosen by its number says nothing of a depth.
-    let recorded = scenario.recording.nodes.iter().filter_map(|choice| match choice {
-        NodeChoice::Depth(depth) => Some(*depth),
-        NodeChoice::Node(_) => None,
-    });
+    let recorded = scenario.recording.nodes.iter().filter_map(|choice| choice.depth(bit));
     let is_far_from = |depth: f64| depth < top - FAR_FROM_RECORDED || depth > bottom + FAR_FROM_RECORDED;
     bit - bottom > FAR_FROM_BIT && recorded.into_iter().all(is_far_from)
 }

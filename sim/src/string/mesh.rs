@@ -89,14 +89,13 @@ impl StringMesh {
         let stretches = boundaries::stretches(scenario)?;
         let length = stretches.last().map_or(0.0, |stretch| stretch.bottom);
         let all_gauges = scenario.gauges();
-        let gauges = all_gauges.iter().map(|gauge| gauge.measured_depth);
-        let masses = string.unbalance.iter().map(|mass| mass.measured_depth);
+        let gauges = all_gauges.iter().map(|gauge| gauge.depth(length));
+        let masses = string.unbalance.iter().map(|mass| mass.depth(length));
         on_string("gauge", gauges.clone(), length)?;
         on_string("unbalance mass", masses.clone(), length)?;
         // The user numbers the nodes if lengths are given; otherwise motion is recorded at a depth, on every mesh.
-        let is_recorded = |choice: &NodeChoice| match *choice {
-            NodeChoice::Depth(depth) if scenario.mesh.is_auto() && is_on_string(depth, length) => Some(depth),
-            NodeChoice::Depth(_) | NodeChoice::Node(_) => None,
+        let is_recorded = |choice: &NodeChoice| {
+            choice.depth(length).filter(|depth| scenario.mesh.is_auto() && is_on_string(*depth, length))
         };
         let recorded = scenario.recording.nodes.iter().filter_map(is_recorded);
         let hole_sections = scenario.well.section.iter().map(|section| section.from);
@@ -105,7 +104,7 @@ impl StringMesh {
 
         let mut mesh = Self { nodes: bare_nodes(&elements, length), elements };
         for gauge in &all_gauges {
-            let index = mesh.nearest_node(gauge.measured_depth);
+            let index = mesh.nearest_node(gauge.depth(length));
             let node = &mut mesh.nodes[index];
             node.clearance =
                 if node.is_gauge { node.clearance.min(gauge.clearance) } else { gauge.clearance };
@@ -116,7 +115,7 @@ impl StringMesh {
             mesh.put_wall_by_length(&scenario.contact);
         }
         for mass in &string.unbalance {
-            let index = mesh.nearest_node(mass.measured_depth);
+            let index = mesh.nearest_node(mass.depth(length));
             mesh.nodes[index]
                 .unbalance
                 .push(NodeUnbalance { moment: mass.mass * mass.radius, phase: mass.phase_deg.to_radians() });
@@ -162,7 +161,11 @@ impl StringMesh {
                 let index = (number as usize).checked_sub(1)?;
                 (index < self.nodes.len()).then_some(index)
             }
-            NodeChoice::Depth(depth) => is_on_string(depth, self.length()).then(|| self.nearest_node(depth)),
+            NodeChoice::Depth(_) | NodeChoice::AboveBit(_) => {
+                let depth =
+                    choice.depth(self.length()).filter(|depth| is_on_string(*depth, self.length()))?;
+                Some(self.nearest_node(depth))
+            }
         }
     }
 }
@@ -360,7 +363,13 @@ mod tests {
         let mut scenario = paper();
         let before = StringMesh::new(&scenario).unwrap().elements.len();
         // 2.3 m in the 4.0 m part: 2.3 m in 2 and 1.7 m in 2 instead of 3.
-        let mass = UnbalanceMass { measured_depth: 2.3, mass: 1.0, radius: 0.05, phase_deg: 90.0 };
+        let mass = UnbalanceMass {
+            measured_depth: Some(2.3),
+            above_bit: None,
+            mass: 1.0,
+            radius: 0.05,
+            phase_deg: 90.0,
+        };
         scenario.string.unbalance.push(mass);
         let mesh = StringMesh::new(&scenario).unwrap();
         assert_eq!(mesh.elements.len(), before + 1);
@@ -373,11 +382,11 @@ mod tests {
     fn a_place_next_to_a_boundary_moves_to_it() {
         let mut scenario = paper();
         // Within 5 % of 1.5 m of the end of the first part, from either side; and just beyond it.
-        scenario.string.gauges.push(Gauge { measured_depth: 3.93, clearance: 0.01 });
+        scenario.string.gauges.push(Gauge::at(3.93, 0.01));
         let snapped = StringMesh::new(&scenario).unwrap();
         assert_eq!(snapped.elements.len(), 296);
         assert!(snapped.nodes[3].is_gauge && snapped.nodes[3].measured_depth == 4.0);
-        scenario.string.gauges.last_mut().unwrap().measured_depth = 3.92;
+        scenario.string.gauges.last_mut().unwrap().measured_depth = Some(3.92);
         let split = StringMesh::new(&scenario).unwrap();
         assert_eq!(split.elements.len(), 297);
         assert!(split.nodes[3].is_gauge && split.nodes[3].measured_depth == 3.92);
@@ -414,7 +423,7 @@ mod tests {
     #[test]
     fn coinciding_gauges_keep_the_smaller_clearance() {
         let mut scenario = paper();
-        scenario.string.gauges.push(Gauge { measured_depth: 200.0, clearance: 5e-3 });
+        scenario.string.gauges.push(Gauge::at(200.0, 5e-3));
         assert_eq!(StringMesh::new(&scenario).unwrap().nodes[296].clearance, 1e-4);
     }
 
@@ -465,11 +474,11 @@ mod tests {
         assert_eq!(refused(&|s| s.mesh.lengths_mut().unwrap().collar = 1e-9), MeshError::TooManyElements);
         assert_eq!(refused(&|s| s.string.sections[1].count = u32::MAX), MeshError::TooManyElements);
         assert!(matches!(
-            refused(&|s| s.string.gauges[1].measured_depth = 201.0),
+            refused(&|s| s.string.gauges[1].measured_depth = Some(201.0)),
             MeshError::OffString { what: "gauge", index: 1, .. }
         ));
         assert!(matches!(
-            refused(&|s| s.string.unbalance[0].measured_depth = -0.1),
+            refused(&|s| s.string.unbalance[0].measured_depth = Some(-0.1)),
             MeshError::OffString { what: "unbalance mass", index: 0, .. }
         ));
     }

@@ -49,13 +49,36 @@ pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario
     }
     mesh_targets(report, scenario);
     length(report, written);
-    masses(report, scenario);
-    for (i, gauge) in scenario.string.gauges.iter().enumerate() {
-        report.positive(gauge.clearance, format!("string.gauges[{i}].clearance"));
+    let string = &written.string;
+    for (i, gauge) in string.gauges.iter().enumerate() {
+        let path = format!("string.gauges[{i}]");
+        report.positive(gauge.clearance, format!("{path}.clearance"));
+        has_place(report, &path, gauge.measured_depth, gauge.above_bit);
     }
-    let mesh = mesh(report, scenario)?;
-    clearances(report, scenario, &mesh);
+    for (i, mass) in string.unbalance.iter().enumerate() {
+        has_place(report, &format!("string.unbalance[{i}]"), mass.measured_depth, mass.above_bit);
+    }
+    masses(report, scenario);
+    let mesh = mesh(report, written, scenario)?;
+    clearances(report, written, &mesh);
     Some(mesh)
+}
+
+/// Requires that a place is given in one way.
+fn has_place(report: &mut Report, path: &str, measured_depth: Option<f64>, above_bit: Option<f64>) {
+    const EITHER: &str = "give either measured_depth or above_bit";
+    match (measured_depth, above_bit) {
+        (Some(_), Some(above)) => {
+            report.require(false, format!("{path}.above_bit"), above, format!("{EITHER}, not both"));
+        }
+        (None, None) => report.require(false, path, "no place", EITHER),
+        _ => {}
+    }
+}
+
+/// Path of the field by which a place is given.
+fn place_field(path: &str, above_bit: Option<f64>) -> String {
+    format!("{path}.{}", if above_bit.is_some() { "above_bit" } else { "measured_depth" })
 }
 
 fn material(report: &mut Report, path: &str, material: &Material) {
@@ -308,7 +331,7 @@ fn masses(report: &mut Report, scenario: &Scenario) {
     for (i, mass) in scenario.string.unbalance.iter().enumerate() {
         let path = format!("string.unbalance[{i}]");
         report.not_negative(mass.mass, format!("{path}.mass"));
-        let half_hole = 0.5 * scenario.hole_at(mass.measured_depth).diameter;
+        let half_hole = 0.5 * scenario.hole_at(mass.depth(scenario.string.depth_of_bit())).diameter;
         report.number(
             mass.radius,
             format!("{path}.radius"),
@@ -319,7 +342,7 @@ fn masses(report: &mut Report, scenario: &Scenario) {
 }
 
 /// The mesh, if sections and targets allow one; reports places that are not on the string and a mesh that is too fine.
-fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
+fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<StringMesh> {
     let mut bare = scenario.clone();
     bare.string.gauges.clear();
     bare.string.unbalance.clear();
@@ -332,15 +355,20 @@ fn mesh(report: &mut Report, scenario: &Scenario) -> Option<StringMesh> {
         Err(_) => return None,
     };
 
-    let gauges = scenario.string.gauges.iter().map(|gauge| gauge.measured_depth);
-    let masses = scenario.string.unbalance.iter().map(|mass| mass.measured_depth);
-    for (list, depths) in [("gauges", gauges.collect::<Vec<_>>()), ("unbalance", masses.collect())] {
-        for (i, depth) in depths.into_iter().enumerate() {
+    let string = &written.string;
+    let gauges = string.gauges.iter().map(|gauge| (gauge.measured_depth, gauge.above_bit));
+    let masses = string.unbalance.iter().map(|mass| (mass.measured_depth, mass.above_bit));
+    for (list, places) in [("gauges", gauges.collect::<Vec<_>>()), ("unbalance", masses.collect())] {
+        for (i, (measured_depth, above_bit)) in places.into_iter().enumerate() {
+            let hint = match (measured_depth, string.bit_depth) {
+                (Some(_), Some(_)) => "; above_bit moves with the bit",
+                _ => "",
+            };
             report.number(
-                depth,
-                format!("string.{list}[{i}].measured_depth"),
-                |depth| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&depth),
-                format!("must be on the string, 0 to {length} m"),
+                above_bit.or(measured_depth).unwrap_or(f64::NAN),
+                place_field(&format!("string.{list}[{i}]"), above_bit),
+                |place| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&place),
+                format!("must be on the string, 0 to {length} m{hint}"),
             );
         }
     }
@@ -370,11 +398,11 @@ fn too_fine(report: &mut Report, scenario: &Scenario) {
 }
 
 /// Checks clearances of gauges next to those of the bodies, and warns of gauges and masses without effect.
-fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
-    let string = &scenario.string;
+fn clearances(report: &mut Report, written: &Scenario, mesh: &StringMesh) {
+    let (string, bit) = (&written.string, mesh.length());
     for (i, gauge) in string.gauges.iter().enumerate() {
         let path = format!("string.gauges[{i}]");
-        let node = mesh.nearest_node(gauge.measured_depth);
+        let node = mesh.nearest_node(gauge.depth(bit));
         let adjoining = &mesh.elements[node.saturating_sub(1)..mesh.elements.len().min(node + 1)];
         let left = adjoining.iter().map(MeshElement::clearance).fold(f64::INFINITY, f64::min);
         if left > 0.0 {
@@ -385,13 +413,13 @@ fn clearances(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
                 format!("must be at most {left} m, the clearance of the body there"),
             );
         }
-        let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.measured_depth) == node);
+        let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.depth(bit)) == node);
         report.warn(shared, &path, "another gauge is at the same node; the smaller clearance holds");
-        placed(report, &path, gauge.measured_depth, node, mesh);
+        placed(report, &place_field(&path, gauge.above_bit), gauge.depth(bit), node, mesh);
     }
     for (i, mass) in string.unbalance.iter().enumerate() {
-        let node = mesh.nearest_node(mass.measured_depth);
-        placed(report, &format!("string.unbalance[{i}]"), mass.measured_depth, node, mesh);
+        let path = place_field(&format!("string.unbalance[{i}]"), mass.above_bit);
+        placed(report, &path, mass.depth(bit), mesh.nearest_node(mass.depth(bit)), mesh);
     }
 }
 
@@ -400,14 +428,10 @@ fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &Strin
     let found = mesh.nodes[node].measured_depth;
     report.warn(
         (found - depth).abs() > SAME_DEPTH,
-        format!("{path}.measured_depth"),
+        path,
         format!("moved from {depth} m to the node at {found} m, a small part of an element away"),
     );
-    report.warn(
-        node == 0,
-        format!("{path}.measured_depth"),
-        "is at the top node, which is held: it has no effect there",
-    );
+    report.warn(node == 0, path, "is at the top node, which is held: it has no effect there");
 }
 
 #[cfg(test)]
@@ -541,9 +565,12 @@ mod tests {
 
     #[test]
     fn gauges_and_masses_are_on_the_string() {
-        let found = problem("string.gauges[1].measured_depth", |s| s.string.gauges[1].measured_depth = 200.5);
+        let found =
+            problem("string.gauges[1].measured_depth", |s| s.string.gauges[1].measured_depth = Some(200.5));
         assert!(found.message.contains("0 to 200 m"), "{found}");
-        problem("string.unbalance[16].measured_depth", |s| s.string.unbalance[16].measured_depth = -1.0);
+        problem("string.unbalance[16].measured_depth", |s| {
+            s.string.unbalance[16].measured_depth = Some(-1.0)
+        });
     }
 
     #[test]
@@ -566,11 +593,17 @@ mod tests {
 
     #[test]
     fn places_that_move_or_do_nothing_earn_a_warning() {
-        let found = warnings(|s| s.string.gauges.push(Gauge { measured_depth: 3.99, clearance: 0.01 }));
+        let found = warnings(|s| s.string.gauges.push(Gauge::at(3.99, 0.01)));
         assert_eq!((found.len(), found[0].path.as_str()), (1, "string.gauges[3].measured_depth"));
-        let found = warnings(|s| s.string.gauges.push(Gauge { measured_depth: 200.0, clearance: 0.01 }));
+        let found = warnings(|s| s.string.gauges.push(Gauge::at(200.0, 0.01)));
         assert_eq!((found.len(), found[0].path.as_str()), (1, "string.gauges[3]"));
-        let top = UnbalanceMass { measured_depth: 0.0, mass: 1.0, radius: 0.05, phase_deg: 0.0 };
+        let top = UnbalanceMass {
+            measured_depth: Some(0.0),
+            above_bit: None,
+            mass: 1.0,
+            radius: 0.05,
+            phase_deg: 0.0,
+        };
         let found = warnings(|s| s.string.unbalance.push(top));
         assert!(found[0].message.contains("held"));
     }

@@ -108,6 +108,7 @@ fn check_outputs(report: &mut Report, scenario: &Scenario, mesh: Option<&StringM
                 let (name, got) = match choice {
                     NodeChoice::Node(number) => ("node", f64::from(number)),
                     NodeChoice::Depth(depth) => ("depth", depth),
+                    NodeChoice::AboveBit(above) => ("above_bit", above),
                 };
                 report.require(
                     mesh.chosen_node(choice).is_some_and(|node| recorded.contains(&node)),
@@ -185,9 +186,12 @@ fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
                     number,
                     format!("must be 1 to {}, the nodes of the mesh", mesh.nodes.len()),
                 ),
-                NodeChoice::Depth(depth) => report.number(
-                    depth,
-                    format!("{path}.depth"),
+                NodeChoice::Depth(place) | NodeChoice::AboveBit(place) => report.number(
+                    place,
+                    match choice {
+                        NodeChoice::AboveBit(_) => format!("{path}.above_bit"),
+                        _ => format!("{path}.depth"),
+                    },
                     |_| false,
                     format!("must be on the string, 0 to {} m", mesh.length()),
                 ),

@@ -53,7 +53,7 @@ pub(crate) fn random_scenario(seed: u64, index: u64) -> Scenario {
     // A gauge may not be wider than the clearance of the body at its place.
     if let Ok(mesh) = StringMesh::new(&scenario) {
         for gauge in &mut scenario.string.gauges {
-            let node = mesh.nearest_node(gauge.measured_depth);
+            let node = mesh.nearest_node(gauge.depth(mesh.length()));
             let above = node.checked_sub(1).map_or(0.0, |above| mesh.elements[above].tube.outer_diameter);
             let below = mesh.elements.get(node).map_or(0.0, |below| below.tube.outer_diameter);
             gauge.clearance = gauge.clearance.min(0.5 * (hole_diameter - above.max(below)));
@@ -104,11 +104,12 @@ fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
     let length = total_length(&string);
     for _ in 0..draw.below(5) {
         let measured_depth = if draw.chance(0.3) { length } else { length * draw.between(0.02, 1.0) };
-        string.gauges.push(Gauge { measured_depth, clearance: draw.log(1e-5, 1e-2) });
+        string.gauges.push(Gauge::at(measured_depth, draw.log(1e-5, 1e-2)));
     }
     for _ in 0..draw.below(6) {
         string.unbalance.push(UnbalanceMass {
-            measured_depth: length * draw.between(0.02, 1.0),
+            measured_depth: Some(length * draw.between(0.02, 1.0)),
+            above_bit: None,
             mass: draw.log(0.05, 300.0),
             radius: 0.5 * hole * draw.between(0.05, 0.9),
             phase_deg: draw.between(0.0, 360.0),

@@ -89,6 +89,8 @@ test("materials are named by their numbers", () => {
 
 test("nodes of histories in part are numbers or depths", () => {
   assert.deepEqual(nodesOf("49, 57.7 m, 100 ft"), [{ node: 49 }, { depth: 57.7 }, { depth: 30.48 }]);
+  assert.deepEqual(nodesOf("12.5 m above bit"), [{ above_bit: 12.5 }]);
+  assert.deepEqual(nodesOf(nodesText([{ above_bit: 3 }])), [{ above_bit: 3 }]);
   assert.deepEqual(nodesOf(""), []);
   assert.equal(nodesOf("4.5"), null);
   assert.equal(nodesOf("bit"), null);

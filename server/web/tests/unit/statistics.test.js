@@ -131,6 +131,12 @@ test("a node is named by the depth that it is recorded for, or else by its numbe
   const byDepth = { recording: { nodes: [{ depth: 57.7 }, { depth: 192 }] } };
   assert.equal(recordedAs(byDepth, 49, 57.73), "57_7m");
   assert.equal(recordedAs(byDepth, 257, 191.9), "192m");
+  const above = {
+    recording: { nodes: [{ above_bit: 12.5 }, { depth: 57.7 }] },
+    string: { sections: [{ length: 200 }] },
+  };
+  assert.equal(recordedAs(above, 290, 187.6), "12_5m_above_bit");
+  assert.equal(recordedAs({ ...above, string: { ...above.string, bit_depth: 70 } }, 49, 57.73), "57_7m");
   assert.equal(recordedAs({ recording: { nodes: [{ node: 49 }] } }, 49, 57.73), "49");
   assert.equal(recordedAs({ recording: { nodes: [{ depth: 57.7 }, { node: 49 }] } }, 49, 57.73), "49");
 });

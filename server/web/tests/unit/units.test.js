@@ -65,6 +65,7 @@ test("names of columns are labels with node, depth, window and variant", () => {
   const label = "lateral vibration";
   assert.equal(units.label("orbit_radius_rms_49"), `${label}, node 49`);
   assert.equal(units.label("orbit_radius_rms_57_7m"), `${label} at 57.7 m`);
+  assert.equal(units.label("orbit_radius_rms_12_5m_above_bit"), `${label} 12.5 m above the bit`);
   assert.equal(units.label("orbit_radius_rms_980m"), `${label} at 980 m`);
   assert.equal(units.label("spread_orbit_radius_rms_49"), `spread of ${label}, node 49`);
   assert.match(units.label("line_frequency_hz_49_w2"), /, node 49, window 2$/);
@@ -77,6 +78,7 @@ test("names of columns are labels with node, depth, window and variant", () => {
 test("columns of a node name it as links do", () => {
   assert.equal(units.nodeOfColumn("orbit_radius_rms_49"), "49");
   assert.equal(units.nodeOfColumn("line_frequency_hz_57_7m_w2"), "57.7m");
+  assert.equal(units.nodeOfColumn("line_frequency_hz_12_5m_above_bit_w2"), "12.5m_above_bit");
   assert.equal(units.nodeOfColumn("friction_coefficient_max"), "");
   assert.equal(units.nodeOfColumn(""), "");
 });

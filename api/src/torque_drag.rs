@@ -3,8 +3,9 @@
 use drillsweep_quantity::columns::*;
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::soft_string::{
-    AtDepth, BroomstickRow, FitError, FitSettings, Margins, SoftString, SoftStringError,
+    AtDepth, BroomstickRow, FitError, FitSettings, Margins, SoftString,
 };
+use drillsweep_sim::solve::stiff_string::{StiffStringError, stiff_broomstick};
 use drillsweep_table::{Column, Table};
 use serde::{Deserialize, Serialize};
 
@@ -23,23 +24,26 @@ const USUAL_DEPTHS: u32 = 40;
 pub struct Broomstick {
     /// Motions and loads.
     pub modes: Vec<DragMode>,
-    /// Bit depths \[m\]; none for 40 of equal steps, the last at the scenario's.
+    /// Bit depths \[m\]; none for 40 of equal steps, the last at the scenario's, and for that alone with a stiff string.
     pub depths: Vec<f64>,
     /// Friction factors of the whole hole; none for the dynamic friction of each hole section.
     pub friction: Vec<f64>,
     /// Travelling weight and axial speed.
     pub settings: DragSettings,
+    /// True for the equilibria of the finite elements in place of the soft string.
+    pub is_stiff: bool,
 }
 
 impl Broomstick {
     /// Forces of every case.
     ///
     /// # Errors
-    /// The scenario has no string in a well, a bit depth is not on the string, or there are too many cases.
-    pub fn rows(&self, scenario: &Scenario) -> Result<Vec<BroomstickRow>, SoftStringError> {
+    /// The scenario has no string in a well, a bit depth is not on the string, there are too many cases, or a stiff string has no equilibrium.
+    pub fn rows(&self, scenario: &Scenario) -> Result<Vec<BroomstickRow>, StiffStringError> {
         let string = SoftString::new(scenario)?;
         let usual = |i: u32| string.bit_depth() * f64::from(i) / f64::from(USUAL_DEPTHS);
         let depths = match &self.depths[..] {
+            [] if self.is_stiff => vec![string.bit_depth()],
             [] => (1..=USUAL_DEPTHS).map(usual).collect(),
             depths => depths.to_vec(),
         };
@@ -47,7 +51,10 @@ impl Broomstick {
             [] => vec![None],
             friction => friction.iter().copied().map(Some).collect(),
         };
-        string.broomstick(&self.modes, &friction, &depths, &self.settings)
+        if self.is_stiff {
+            return stiff_broomstick(scenario, &self.modes, &friction, &depths, &self.settings);
+        }
+        Ok(string.broomstick(&self.modes, &friction, &depths, &self.settings)?)
     }
 
     /// Forces of every case as a table.
@@ -160,7 +167,8 @@ mod tests {
         let scenario = preset("paper-200m").unwrap();
         let modes = vec![DragMode::PickUp, DragMode::Rotate];
         let settings = DragSettings::default();
-        let mut broomstick = Broomstick { modes, depths: Vec::new(), friction: Vec::new(), settings };
+        let mut broomstick =
+            Broomstick { modes, depths: Vec::new(), friction: Vec::new(), settings, is_stiff: false };
         let table = broomstick.table(&scenario).unwrap();
         assert_eq!(table.rows(), 80);
         let column = |table: &Table, name: &str| table.columns[name].numbers().unwrap();
@@ -170,6 +178,11 @@ mod tests {
         // Off bottom, rotating; the stiff string of this scenario has 12.00 kN in flowing mud, whose drag lifts it.
         let last = *column(&table, "hook_load").last().unwrap();
         assert!((12.00e3..12.5e3).contains(&last), "{last}");
+        let stiff = Broomstick { is_stiff: true, ..broomstick.clone() }.table(&scenario).unwrap();
+        // In flowing mud, with the dynamic friction of the scenario as the soft string.
+        assert_eq!(column(&stiff, "bit_depth"), [200.0, 200.0]);
+        let (up, soft) = (column(&stiff, "hook_load"), column(&table, "hook_load"));
+        assert!((up[1] / 12.00e3 - 1.0).abs() < 1e-2 && up[0] > up[1] && up[0] < soft[39], "{up:?}");
         broomstick.depths = vec![201.0];
         let problem = broomstick.table(&scenario).unwrap_err();
         assert!(problem.detail.contains("201 m"), "{problem:?}");
@@ -183,6 +196,7 @@ mod tests {
             depths: vec![120.0, 200.0],
             friction: vec![0.27],
             settings: DragSettings { travelling_weight: 2e5, axial_speed: None },
+            is_stiff: false,
         };
         let point = |row: &BroomstickRow| serde_json::json!({ "bit_depth": row.bit_depth, "mode": row.mode.name(), "hook_load": row.hook_load });
         let points: Vec<_> = broomstick.rows(&scenario).unwrap().iter().map(point).collect();

@@ -37,6 +37,9 @@ pub(crate) struct StaticsArguments {
     /// Axial speed of the mode ream in m/s, negative upwards.
     #[arg(long, value_name = "SPEED", allow_negative_numbers = true)]
     axial_speed: Option<f64>,
+    /// Take the equilibria of the finite elements in place of the soft string, 60 cases at most; without --depths at the scenario's bit depth.
+    #[arg(long)]
+    stiff: bool,
     /// Print the cases as JSON.
     #[arg(long)]
     json: bool,
@@ -74,19 +77,23 @@ pub(crate) fn show(arguments: &StaticsArguments) -> anyhow::Result<()> {
             travelling_weight: arguments.travelling_weight,
             axial_speed: arguments.axial_speed,
         },
+        is_stiff: arguments.stiff,
     };
     let rows = broomstick.rows(&scenario)?;
     match (arguments.json, arguments.csv) {
         (true, _) => print(&serde_json::to_string_pretty(&rows)?),
         (_, true) => print(csv::write(&table(&rows))?.trim_end()),
-        _ => print(text(&scenario.name, &rows)?.trim_end()),
+        _ => {
+            let string = if arguments.stiff { "the finite elements" } else { "a soft string in still mud" };
+            print(text(&scenario.name, string, &rows)?.trim_end());
+        }
     }
     Ok(())
 }
 
-fn text(name: &str, rows: &[BroomstickRow]) -> Result<String, std::fmt::Error> {
+fn text(name: &str, string: &str, rows: &[BroomstickRow]) -> Result<String, std::fmt::Error> {
     let name = if name.is_empty() { "the scenario" } else { name };
-    let mut text = format!("torque and drag of {name}, a soft string in still mud\n");
+    let mut text = format!("torque and drag of {name}, {string}\n");
     for rows in rows.chunk_by(|a, b| a.mode == b.mode) {
         writeln!(text, "\n{}\n{}", rows[0].mode.name(), mode_text(rows))?;
         let worst = |value: &dyn Fn(&BroomstickRow) -> Option<AtDepth>, sign: f64| {
@@ -160,8 +167,11 @@ mod tests {
             depths: list(BIT_DEPTH.name, "100:200:3").unwrap().0,
             friction: list(FRICTION_FACTOR.name, "0.2,0.3").unwrap().0,
             settings: DragSettings { travelling_weight: 2e5, axial_speed: None },
+            is_stiff: false,
         };
-        insta::assert_snapshot!(text("paper-200m", &broomstick.rows(&scenario).unwrap()).unwrap());
+        insta::assert_snapshot!(
+            text("paper-200m", "a soft string in still mud", &broomstick.rows(&scenario).unwrap()).unwrap()
+        );
     }
 
     #[test]

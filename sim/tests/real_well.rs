@@ -6,7 +6,7 @@ use drillsweep_sim::solve::hydraulics::{Circuit, Conduit};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::soft_string::{DragCase, DragMode, DragSettings, SoftString};
 use drillsweep_sim::solve::statics::Equilibrium;
-use drillsweep_sim::solve::stiff_string::stiff_row;
+use drillsweep_sim::solve::stiff_string::{StiffStringError, stiff_broomstick, stiff_row};
 
 fn well() -> Scenario {
     preset("wells/volve-f12").expect("it ships with the program")
@@ -156,7 +156,7 @@ fn a_whole_string_moves_at_the_hook_loads_of_a_soft_string() {
     scenario.mud.as_mut().expect("mud").flow_rate = 0.0;
     let soft = SoftString::new(&scenario).expect("valid");
     let settings = DragSettings { axial_speed: Some(-0.3), ..DragSettings::default() };
-    let (mu, bit_depth) = (0.25, soft.length());
+    let (mu, bit_depth) = (0.25, soft.bit_depth());
     // Friction about the axis moves a string up the wall, whose side force falls by this; a soft string stays on the low side.
     let climb = 1.0 / f64::hypot(mu, 1.0);
     for mode in DragMode::ALL {
@@ -171,4 +171,24 @@ fn a_whole_string_moves_at_the_hook_loads_of_a_soft_string() {
             assert!((0.96..1.03).contains(&ratio), "{}: {ratio} of the torque", mode.name());
         }
     }
+}
+
+#[test]
+fn a_stiff_string_hangs_at_any_depth_of_its_bit_as_a_soft_one() {
+    let mut scenario = well();
+    scenario.mud.as_mut().expect("mud").flow_rate = 0.0;
+    let soft = SoftString::new(&scenario).expect("valid");
+    let settings = DragSettings::default();
+    let (modes, depths) = ([DragMode::PickUp, DragMode::Rotate], [400.0, 1500.0, 2500.0]);
+    let found = stiff_broomstick(&scenario, &modes, &[Some(0.2)], &depths, &settings).expect("rests");
+    let expected = soft.broomstick(&modes, &[Some(0.2)], &depths, &settings).expect("valid");
+    for (found, expected) in found.iter().zip(&expected) {
+        assert_eq!((found.mode, found.bit_depth), (expected.mode, expected.bit_depth));
+        let ratio = found.hook_load / expected.hook_load;
+        assert!((ratio - 1.0).abs() < 0.02, "{} at {} m: {ratio}", found.mode.name(), found.bit_depth);
+    }
+    let refused = stiff_broomstick(&scenario, &modes, &[Some(0.2); 31], &[400.0], &settings);
+    assert_eq!(refused, Err(StiffStringError::TooManyCases(62)));
+    let beyond = stiff_broomstick(&scenario, &modes, &[None], &[4000.0], &settings).unwrap_err();
+    assert!(matches!(beyond, StiffStringError::Case(_)), "{beyond}");
 }

@@ -48,6 +48,10 @@ pub(crate) struct TorqueDragQuery {
     /// Axial speed of the mode `ream` \[m/s\], downhole positive.
     #[serde(default, deserialize_with = "value::number")]
     axial_speed: Option<f64>,
+    /// True for the equilibria of the finite elements in place of the soft string: with bending stiffness, clearance and the flow of the mud, at some 0.1 s a case,
+    /// 60 at most. Without `depths`, at the scenario's bit depth.
+    #[serde(default)]
+    stiff: bool,
     /// Format of the table, or of a picture of `field`; absent means that `Accept` decides.
     #[param(inline)]
     format: Option<PictureFormat>,
@@ -75,7 +79,7 @@ fn modes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<DragMode>, D:
 
 /// Torque and drag of a point's string over bit depth
 ///
-/// Hook load and surface torque of a soft string, without bending stiffness, on the axis of the hole in still mud, with margins to yield, overpull and buckling: a row for
+/// Hook load and surface torque of a soft string, without bending stiffness, on the axis of the hole in still mud, or of the stiff one, with margins to yield, overpull and buckling: a row for
 /// each motion, friction factor and bit depth, 5000 at most. Pictures show lines over depth, a broomstick.
 #[utoipa::path(
     get,
@@ -100,9 +104,9 @@ pub(crate) async fn show(
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
-    let TorqueDragQuery { modes, depths, friction, travelling_weight, axial_speed, field, .. } = query;
+    let TorqueDragQuery { modes, depths, friction, travelling_weight, axial_speed, stiff, field, .. } = query;
     let settings = DragSettings { travelling_weight: travelling_weight.unwrap_or(0.0), axial_speed };
-    let broom = Broomstick { modes, depths, friction, settings };
+    let broom = Broomstick { modes, depths, friction, settings, is_stiff: stiff };
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
     let (table, _memory): (Table, _) =
         place.run(move |_: &mut Work| Ok(broom.table(&point.scenario)?)).await?;

@@ -6,7 +6,7 @@ use drillsweep_scenario::{Effect, Scenario, StartFriction, Switch};
 
 use super::model::{Model, ModelError};
 use super::soft_string::{
-    BroomstickRow, Carried, DragCase, DragMode, DragSettings, Margins, SoftStringError, Strength,
+    BroomstickRow, Carried, DragCase, DragMode, DragSettings, Margins, SoftString, SoftStringError, Strength,
 };
 use super::statics::{Equilibrium, StaticsError};
 use crate::math::dof::{DOFS, W};
@@ -46,6 +46,37 @@ pub enum StiffStringError {
     TooManyCases(usize),
 }
 
+/// Forces of every mode with every friction factor at every bit depth, in this order of nesting.
+///
+/// # Errors
+/// There are too many cases, a case is not valid, or a string has no model or no equilibrium.
+pub fn stiff_broomstick(
+    scenario: &Scenario,
+    modes: &[DragMode],
+    friction: &[Option<f64>],
+    depths: &[f64],
+    settings: &DragSettings,
+) -> Result<Vec<BroomstickRow>, StiffStringError> {
+    let cases = modes.len().saturating_mul(friction.len()).saturating_mul(depths.len());
+    if cases > MOST_STIFF_CASES {
+        return Err(StiffStringError::TooManyCases(cases));
+    }
+    // Bit depths are checked before any work is done.
+    let soft = SoftString::new(scenario)?;
+    for &bit_depth in depths {
+        soft.forces(&DragCase { mode: DragMode::Rotate, bit_depth, friction: None }, settings)?;
+    }
+    let mut rows = Vec::with_capacity(cases);
+    for &mode in modes {
+        for &friction in friction {
+            for &bit_depth in depths {
+                rows.push(stiff_row(scenario, &DragCase { mode, bit_depth, friction }, settings)?);
+            }
+        }
+    }
+    Ok(rows)
+}
+
 /// Forces at the surface and margins in one case.
 ///
 /// # Errors
@@ -76,15 +107,24 @@ pub fn stiff_row(
     })
 }
 
-/// The scenario in equilibrium alone, in the motion and under the loads of a case. Static friction has the value of dynamic friction, so that the wall
+/// The scenario in equilibrium alone, with the bit at its depth, in the motion and under the loads of a case. Static friction has the value of dynamic friction, so that the wall
 /// has one factor for every speed.
 fn in_case(
     scenario: &Scenario,
     case: &DragCase,
     settings: &DragSettings,
 ) -> Result<Scenario, SoftStringError> {
-    let DragCase { mode, friction, .. } = *case;
+    let DragCase { mode, friction, bit_depth } = *case;
     let mut moving = scenario.clone();
+    // Gauges belong to the string.
+    let bit = scenario.string.depth_of_bit();
+    for gauge in &mut moving.string.gauges {
+        (gauge.above_bit, gauge.measured_depth) = (Some(bit - gauge.depth(bit)), None);
+    }
+    moving.string.gauges.retain(|gauge| gauge.depth(bit_depth) >= 0.0);
+    moving.string.unbalance.clear();
+    moving.recording.nodes.clear();
+    moving.string.bit_depth = Some(bit_depth);
     moving.effects.set(Effect::Transient, Switch::Off);
     moving.statics.friction = StartFriction::BreakAway;
     let motion = mode.motion(&scenario.operation, settings)?;

@@ -84,8 +84,8 @@ pub fn long_scenario(seed: u64, index: u64, duration: f64, element: f64) -> Scen
         station.measured_depth *= length / drawn;
     }
     for mass in &mut scenario.string.unbalance {
-        mass.measured_depth = (mass.measured_depth / drawn * length / element).round().max(1.0) * element;
-        mass.measured_depth = mass.measured_depth.min(length);
+        let depth = (mass.depth(drawn) / drawn * length / element).round().max(1.0) * element;
+        (mass.measured_depth, mass.above_bit) = (Some(depth.min(length)), None);
     }
     scenario.mesh = Mesh::Lengths(ElementLengths {
         drillpipe: element,

@@ -333,8 +333,13 @@ mod tests {
         scenario.string.gauges.clear();
         scenario.mesh.lengths_mut().unwrap().collar = 0.5;
         (scenario.operation.weight_on_bit, scenario.operation.torque_on_bit) = (0.0, 0.0);
-        scenario.string.unbalance =
-            vec![UnbalanceMass { measured_depth: 6.0, mass: 0.8, radius: 0.1, phase_deg: 30.0 }];
+        scenario.string.unbalance = vec![UnbalanceMass {
+            measured_depth: Some(6.0),
+            above_bit: None,
+            mass: 0.8,
+            radius: 0.1,
+            phase_deg: 30.0,
+        }];
         scenario
     }
 
@@ -406,7 +411,7 @@ mod tests {
         for station in &mut scenario.well.survey {
             station.inclination_deg = 90.0;
         }
-        scenario.string.gauges = vec![Gauge { measured_depth: 6.0, clearance: 1e-4 }];
+        scenario.string.gauges = vec![Gauge { measured_depth: Some(6.0), above_bit: None, clearance: 1e-4 }];
         (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
         let force = Excitation::Turning { measured_depth: 6.0, amplitude: 100.0, per_revolution: 1.0 };
         let found = &response(&scenario, &force, &[0.01])[0];

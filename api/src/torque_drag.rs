@@ -80,6 +80,7 @@ pub fn table(rows: &[BroomstickRow]) -> Table {
     };
     let (yields, yields_at) = margin(|margins| margins.yield_ratio);
     let (overpull, overpull_at) = margin(|margins| margins.overpull);
+    let (made_up, made_up_at) = margin(|margins| margins.make_up_ratio);
     let (buckles, buckles_at) = margin(|margins| margins.buckling_ratio);
     Table::default()
         .with(&DRAG_MODE, Column::Text(rows.iter().map(|row| Some(row.mode.name().to_owned())).collect()))
@@ -91,6 +92,8 @@ pub fn table(rows: &[BroomstickRow]) -> Table {
         .with(&LARGEST_YIELD_RATIO_DEPTH, yields_at)
         .with(&OVERPULL_MARGIN, overpull)
         .with(&OVERPULL_MARGIN_DEPTH, overpull_at)
+        .with(&LARGEST_MAKE_UP_RATIO, made_up)
+        .with(&LARGEST_MAKE_UP_RATIO_DEPTH, made_up_at)
         .with(&LARGEST_BUCKLING_RATIO, buckles)
         .with(&LARGEST_BUCKLING_RATIO_DEPTH, buckles_at)
 }

@@ -121,6 +121,9 @@ fn text(name: &str, string: &str, rows: &[BroomstickRow]) -> Result<String, std:
         if let Some(found) = worst(&|row| row.margins.yield_ratio, 1.0) {
             writeln!(text, "largest stress: {:.2} of the yield strength, {}", found.0.value, at(found))?;
         }
+        if let Some(found) = worst(&|row| row.margins.make_up_ratio, 1.0) {
+            writeln!(text, "largest torque: {:.2} of the make-up torque, {}", found.0.value, at(found))?;
+        }
         if let Some(found) = worst(&|row| row.margins.overpull, -1.0) {
             writeln!(text, "least margin of overpull: {:.1} kN, {}", found.0.value / 1e3, at(found))?;
         }

@@ -169,6 +169,10 @@ quantities! {
     SURFACE_TORQUE: "surface_torque", "", TORQUE, "surface torque";
     /// Least additional tension by which a part of the string yields with its torque; absent without a grade.
     OVERPULL_MARGIN: "overpull_margin", "", FORCE, "margin of overpull";
+    /// Largest torque over the make-up torque of the connections; absent without one.
+    LARGEST_MAKE_UP_RATIO: "largest_make_up_ratio", "", RATIO, "largest ratio of torque and make-up torque";
+    /// Measured depth of the largest ratio of torque and make-up torque.
+    LARGEST_MAKE_UP_RATIO_DEPTH: "largest_make_up_ratio_depth", "", DEPTH, "depth of the largest ratio of torque and make-up torque";
     /// Measured depth of the least margin of overpull.
     OVERPULL_MARGIN_DEPTH: "overpull_margin_depth", "", DEPTH, "depth of the least margin of overpull";
 

@@ -40,6 +40,7 @@ pub(super) static ALL: &[Quantity] = &[
     ),
     field("string.sections.blade_diameter", "", Some(&units::WIDTH), "blade diameter"),
     field("string.sections.blade_above_end", "", Some(&units::DEPTH), "height of the blades"),
+    field("string.sections.make_up_torque", "", Some(&units::TORQUE), "make-up torque"),
     field("string.sections.tool_joint.length", "", Some(&units::DEPTH), "tool joint length"),
     field(
         "string.sections.tool_joint.outer_diameter",

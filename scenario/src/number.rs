@@ -122,7 +122,7 @@ numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
 numbers!(DrillString: material, sections, bit_depth, gauges, unbalance);
 numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
 numbers!(Section: length, outer_diameter, inner_diameter, mass_per_length, stiffness_outer_diameter, stiffness_inner_diameter,
-    blade_diameter, blade_above_end, tool_joint, material; without name, kind, count, grade);
+    blade_diameter, blade_above_end, tool_joint, material, make_up_torque; without name, kind, count, grade);
 numbers!(ToolJoint: length, outer_diameter, inner_diameter, material);
 numbers!(Gauge: measured_depth, above_bit, clearance);
 numbers!(UnbalanceMass: measured_depth, above_bit, mass, radius, phase_deg);

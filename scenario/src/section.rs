@@ -40,6 +40,8 @@ pub struct Section {
     pub material: Option<Material>,
     /// Grade; absent means that of the material.
     pub grade: Option<Grade>,
+    /// Make-up torque of its connections; absent if not known.
+    pub make_up_torque: Option<f64>,
 }
 
 impl TryFrom<WrittenSection> for Section {
@@ -66,6 +68,7 @@ impl TryFrom<WrittenSection> for Section {
             tool_joint: written.tool_joint.or(pipe.and_then(|pipe| pipe.tool_joint)),
             material: written.material,
             grade: written.grade.or(pipe.map(|pipe| pipe.grade)),
+            make_up_torque: written.make_up_torque,
         })
     }
 }
@@ -129,6 +132,10 @@ pub struct WrittenSection {
     /// Grade of the section's steel; absent means that of its material.
     #[serde(default)]
     grade: Option<Grade>,
+    /// Make-up torque of its connections \[N m\], above 0; usual 1e4 to 6e4; absent if not known. Torque and drag compare the torque of the string with it: a
+    /// connection that carries more is made up further downhole.
+    #[serde(default)]
+    make_up_torque: Option<f64>,
 }
 
 /// The kinds of section that a mesh distinguishes: `drillpipe` (heavy-weight drillpipe too), `collar`, `stabilizer` (its body; its
@@ -287,6 +294,7 @@ impl Section {
             tool_joint: None,
             material: None,
             grade: None,
+            make_up_torque: None,
         }
     }
 

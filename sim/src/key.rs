@@ -663,6 +663,7 @@ mod tests {
             ".string.sections.blade_above_end",
             ".string.sections.blade_diameter",
             ".string.sections.grade",
+            ".string.sections.make_up_torque",
             ".string.sections.mass_per_length",
             ".string.sections.material.grade",
             ".string.sections.stiffness_inner_diameter",

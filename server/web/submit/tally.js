@@ -51,6 +51,7 @@ const TABLES = [
       { name: "stiffness_inner_diameter", text: "Stiffness inner d.", isOptional: true },
       { name: "blade_diameter", text: "Blade diameter", isOptional: true },
       { name: "blade_above_end", text: "Blades above end", isOptional: true },
+      { name: "make_up_torque", text: "Make-up torque", isOptional: true },
       { name: "tool_joint.length", text: "Joint length", isOptional: true },
       { name: "tool_joint.outer_diameter", text: "Joint outer d.", isOptional: true },
       { name: "tool_joint.inner_diameter", text: "Joint inner d.", isOptional: true },

@@ -172,7 +172,8 @@ fn margins(model: &Model, equilibrium: &Equilibrium) -> Margins {
         let weight = weight_x.hypot(weight_y).hypot(element.axial_weight / data.length);
         let [side_x, side_y] =
             [0, 1].map(|axis| element.lateral_load[axis] + tension * element.curvature[axis]);
-        let strength = Strength::new(*element.beam.section(), data.tube.material.grade, weight);
+        let strength = Strength::new(*element.beam.section(), data.tube.material.grade, weight)
+            .with_make_up_torque(model.scenario.string.sections[data.section].make_up_torque);
         let [curved_x, curved_y] = element.curvature;
         margins.keep(
             &strength,

@@ -41,6 +41,9 @@ const DENSEST_SOLID: f64 = 23_000.0;
 /// Largest Young's modulus of a solid: diamond, the stiffest one, has 1.2e12 Pa.
 const STIFFEST_SOLID: f64 = 1.5e12;
 
+/// Largest make-up torque \[N m\]: that of the largest connections is some 200 kN m.
+const LARGEST_MAKE_UP_TORQUE: f64 = 1e6;
+
 /// Checks the string of a scenario as it is written, and as it is in the hole; returns its mesh if there is one.
 pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<StringMesh> {
     material(report, "string.material", &scenario.string.material);
@@ -186,6 +189,14 @@ fn blades(report: &mut Report, path: &str, section: &Section, hole_diameter: f64
                 "must be {} m, that of the body, to {hole_diameter} m, that of the hole",
                 section.outer_diameter
             ),
+        );
+    }
+    if let Some(torque) = section.make_up_torque {
+        report.number(
+            torque,
+            format!("{path}.make_up_torque"),
+            |torque| torque > 0.0 && torque <= LARGEST_MAKE_UP_TORQUE,
+            format!("must be above 0 and at most {LARGEST_MAKE_UP_TORQUE} N m"),
         );
     }
     if let Some(above) = section.blade_above_end {

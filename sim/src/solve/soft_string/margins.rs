@@ -21,6 +21,8 @@ pub struct Margins {
     pub yield_ratio: Option<AtDepth>,
     /// Least additional tension \[N\] by which a part with this torque yields, without bending; absent without a grade.
     pub overpull: Option<AtDepth>,
+    /// Largest torque over the make-up torque of the connections; absent without one.
+    pub make_up_ratio: Option<AtDepth>,
     /// Largest compression over the sinusoidal buckling load; helical from sqrt(2) on. Absent without compression.
     pub buckling_ratio: Option<AtDepth>,
 }
@@ -86,6 +88,7 @@ impl Margins {
             }
         };
         keep(&mut self.yield_ratio, yield_ratio, 1.0);
+        keep(&mut self.make_up_ratio, strength.make_up_ratio(torque), 1.0);
         keep(&mut self.overpull, strength.overpull(tension, torque), -1.0);
         keep(&mut self.buckling_ratio, Some(buckling_ratio).filter(|ratio| *ratio > 0.0), 1.0);
         DragRow { measured_depth, tension, torque, side_force, yield_ratio, buckling_ratio }

@@ -13,6 +13,8 @@ pub(crate) struct Strength {
     section: BeamSection,
     /// Yield strength \[Pa\], if the material has a grade.
     yield_strength: Option<f64>,
+    /// Make-up torque of the connections \[N m\], if it is known.
+    make_up_torque: Option<f64>,
     /// Buckling load of the string in a vertical hole \[N\].
     vertical: f64,
 }
@@ -20,7 +22,18 @@ pub(crate) struct Strength {
 impl Strength {
     pub(crate) fn new(section: BeamSection, grade: Option<Grade>, weight: f64) -> Self {
         let vertical = VERTICAL * (section.bending_stiffness() * weight * weight).cbrt();
-        Self { section, yield_strength: grade.map(Grade::yield_strength), vertical }
+        Self { section, yield_strength: grade.map(Grade::yield_strength), make_up_torque: None, vertical }
+    }
+
+    /// The same cross-section with connections of a make-up torque \[N m\].
+    #[must_use]
+    pub(crate) fn with_make_up_torque(self, make_up_torque: Option<f64>) -> Self {
+        Self { make_up_torque, ..self }
+    }
+
+    /// Torque over the make-up torque of the connections.
+    pub(super) fn make_up_ratio(&self, torque: f64) -> Option<f64> {
+        Some(torque.abs() / self.make_up_torque?)
     }
 
     /// Outer diameter \[m\].

@@ -67,7 +67,8 @@ impl SoftString {
                 ends: [part.top, part.bottom],
                 weight: acceleration * mass,
                 contact_radius: 0.5 * part.tube.outer_diameter.max(joint),
-                strength: Strength::new(section, part.tube.material.grade, acceleration * mass),
+                strength: Strength::new(section, part.tube.material.grade, acceleration * mass)
+                    .with_make_up_torque(scenario.string.sections[part.section].make_up_torque),
             }
         };
         let parts: Vec<Part> = uniform.iter().enumerate().map(part).collect();

@@ -356,6 +356,11 @@ fn margins_are_those_of_the_sections() {
     let stress = (top.tension / area).hypot(3_f64.sqrt() * shear);
     assert_near(top.yield_ratio.unwrap(), stress / strength, 1e-4);
     let overpull = area * (strength * strength - 3.0 * shear * shear).sqrt() - top.tension;
+    assert_eq!(result.margins.make_up_ratio, None);
+    scenario.string.sections[0].make_up_torque = Some(4e4);
+    let made_up = forces(&scenario, DragMode::Drill, 0.3).margins.make_up_ratio.unwrap();
+    assert_near(made_up.value, result.surface_torque / 4e4, 1e-12);
+    assert_eq!(made_up.measured_depth, 0.0);
     let least = result.margins.overpull.unwrap();
     assert_near(least.value, overpull, 1e-4);
     assert_eq!(least.measured_depth, 0.0);

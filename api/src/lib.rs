@@ -40,8 +40,8 @@ pub use expand::{
 };
 pub use listed::ListedPoints;
 pub use point::{
-    ArtifactEntry, ArtifactList, ExportManifest, Failure, FailureList, MissingFile, PointDetail, PointLinks,
-    PointList, PointRow, PointState, SelectedPointList,
+    ArtifactEntry, ArtifactList, ErrorPlace, ExportManifest, Failure, FailureList, MissingFile, PointDetail,
+    PointLinks, PointList, PointRow, PointState, SelectedPointList,
 };
 pub use preset::{preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};

@@ -1,6 +1,7 @@
 //! One point of a sweep as the service shows it.
 
 use drillsweep_scenario::{PointError, Scenario};
+use drillsweep_sim::string::StringMesh;
 use indexmap::IndexMap;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -182,6 +183,28 @@ pub struct PointDetail {
     /// Names of the tables that the run produced.
     #[serde(default)]
     pub tables: Vec<String>,
+    /// Place of the node of its error; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_place: Option<ErrorPlace>,
+}
+
+/// Place on the string at which a point failed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+pub struct ErrorPlace {
+    /// Measured depth \[m\].
+    pub measured_depth: f64,
+    /// Name of the component; empty if its section has none.
+    pub component: String,
+}
+
+impl ErrorPlace {
+    /// Place of a node, from 1 at the top, of a scenario; `None` if its string has no such node.
+    pub fn of(scenario: &Scenario, node: u32) -> Option<Self> {
+        let mesh = StringMesh::new(scenario).ok()?;
+        let measured_depth = mesh.nodes.get(node.checked_sub(1)? as usize)?.measured_depth;
+        let component = scenario.string.component_at(measured_depth).to_owned();
+        Some(Self { measured_depth, component })
+    }
 }
 
 /// Links to more of a point.

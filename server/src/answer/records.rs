@@ -3,9 +3,9 @@
 use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::VerifiedPoint;
 use drillsweep_api::{
-    Expansion, Failure, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow, PointState,
-    ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, SweepVerification, compose,
-    key_text,
+    ErrorPlace, Expansion, Failure, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow,
+    PointState, ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, SweepVerification,
+    compose, key_text,
 };
 use drillsweep_store::{
     CachePolicy, FailureRecord, NewPoint, NewSweep, NewVerification, PointRecord, ScenarioText, Stage,
@@ -152,8 +152,11 @@ pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String
         return Err(Error::internal("a point was read without its scenario"));
     };
     let scenario = compose(base_json, changes_json).map_err(|problem| Error::internal(&problem))?;
+    let row = point_row(sweep, record)?;
+    let node = row.error.as_ref().and_then(|error| error.node);
     Ok(PointDetail {
-        row: point_row(sweep, record)?,
+        error_place: node.and_then(|node| ErrorPlace::of(&scenario, node)),
+        row,
         key: key_text(&record.work_key),
         scenario: Box::new(scenario),
         summary: record.summary_json.as_deref().map(read).transpose()?,

@@ -52,6 +52,9 @@ async fn a_stored_table_is_served_in_every_format() {
 #[tokio::test]
 async fn the_table_of_a_sweep_has_a_row_for_every_point() {
     let (bench, path) = finished().await;
+    let failed = bench.get(&format!("{path}/points/2")).await.json();
+    let depth = failed["error_place"]["measured_depth"].as_f64().expect("the place of its node");
+    assert!((depth - 57.7).abs() < 0.1, "{failed}");
     let table = bench.get(&format!("{path}/table")).await.json();
     assert_eq!(
         table["columns"],

@@ -219,7 +219,7 @@ function headingPart({ sweep, ordinal, query }, point) {
         reportLink(point.links.self),
       ),
     ),
-    point.error && errorPart(point.error),
+    point.error && errorPart(point.error, point.error_place),
   ];
 }
 
@@ -235,10 +235,15 @@ function statePart({ state, progress, summary }) {
   );
 }
 
-/** @param {any} error of a point */
-function errorPart(error) {
+/**
+ * @param {any} error of a point
+ * @param {{measured_depth: number, component: string} | undefined} at place of its node
+ */
+function errorPart(error, at) {
   const place = [
     typeof error.time === "number" && `at ${say("time", error.time)}`,
+    at?.component,
+    at && say("measured_depth", at.measured_depth),
     error.node && `node ${error.node}`,
   ];
   return h(

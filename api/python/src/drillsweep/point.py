@@ -343,12 +343,13 @@ class Point(Reported):
         friction: Sequence[float] | None = None,
         travelling_weight: SupportsFloat | None = None,
         axial_speed: SupportsFloat | None = None,
+        stiff: bool = False,
         units: str | None = None,
     ) -> Table:
         """Hook load and surface torque of a soft string over the depth of the bit, with margins: a row a case.
 
         Columns: `drag_mode`, `friction_factor`, `bit_depth`, `hook_load`, `surface_torque`, `largest_yield_ratio`,
-        `overpull_margin`, `largest_buckling_ratio`, and the depths of the last three.
+        `overpull_margin`, `largest_make_up_ratio`, `largest_buckling_ratio`, and depths of the last four.
 
         Args:
             modes: Some of `pick_up`, `slack_off`, `rotate` (these three unless given), `drill`, `slide` and `ream`.
@@ -356,12 +357,18 @@ class Point(Reported):
             friction: Friction factors of the whole hole; the dynamic friction of each hole section unless given.
             travelling_weight: Weight of top drive and travelling block [N].
             axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.
+            stiff: Takes the equilibria of the finite elements in place of the soft string: some 0.1 s a case, 60 at most.
             units: Units of the columns: `"si"`, `"field"`, or `"field,hook_load:kN"`; None means the kept units.
         """
         in_metres = None if depths is None else [in_query("depth", depth) for depth in depths]
         lists = {"modes": modes, "depths": in_metres, "friction": friction}
         query = {name: ",".join(map(str, values)) for name, values in lists.items() if values is not None}
-        settings = {"travelling_weight": travelling_weight, "axial_speed": axial_speed, "units": units}
+        settings = {
+            "travelling_weight": travelling_weight,
+            "axial_speed": axial_speed,
+            "stiff": stiff or None,
+            "units": units,
+        }
         return self.view("torque_drag", **query, **settings)
 
     def forced_response(

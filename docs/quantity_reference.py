@@ -14,7 +14,8 @@ INTRODUCTION = """# Columns and units
 
 What the columns of tables and the fields of a point's summary are, with the unit in which they are served, and
 the oil field's. A node's number stands at the end of a name (`u_49`), or the depth in metres for which the node is
-recorded (`orbit_radius_rms_57_7m` for 57.7 m), that of a spectrum window after it (`line_amplitude_57_7m_w1`).
+recorded (`orbit_radius_rms_57_7m` for 57.7 m), or its distance above the bit (`orbit_radius_rms_12_5m_above_bit`), that
+of a spectrum window after it (`line_amplitude_57_7m_w1`).
 `ensemble_mean_` and `spread_` before a name make it the mean and the standard deviation
 over an ensemble, `confidence_` half the width of the interval of 95 % of irregular motion, `reference_` and `bias_`
 what a reference run shows; biases are relative, but for frequencies.

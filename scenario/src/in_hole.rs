@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use drillsweep_quantity::Place;
 
-use crate::{DrillString, Gauge, NodeChoice, Scenario, Section, UnbalanceMass};
+use crate::{DrillString, Gauge, NodeChoice, Scenario, Section, SectionOrder, UnbalanceMass};
 
 /// Difference of depths that rounding makes \[m\].
 pub(crate) const SAME_DEPTH: f64 = 1e-6;
@@ -35,7 +35,7 @@ impl PlacedSection<'_> {
 }
 
 impl Scenario {
-    /// The same scenario written with the string that is in the hole: without the sections and pieces above it, and with the measured depths of
+    /// The same scenario written with the string that is in the hole: from the top, without the sections and pieces above it, and with the measured depths of
     /// gauges and unbalance masses. `bit_depth` remains only if the first piece is partly above.
     ///
     /// A bit depth that is not on the string, which validation refuses, leaves the whole string.
@@ -43,7 +43,8 @@ impl Scenario {
         let string = &self.string;
         let mut heights = string.gauges.iter().map(|gauge| gauge.above_bit);
         let mut of_masses = string.unbalance.iter().map(|mass| mass.above_bit);
-        if string.bit_depth.is_none()
+        if string.order == SectionOrder::FromTop
+            && string.bit_depth.is_none()
             && heights.all(|above| above.is_none())
             && of_masses.all(|above| above.is_none())
         {
@@ -51,6 +52,10 @@ impl Scenario {
         }
         let mut scenario = self.clone();
         let string = &mut scenario.string;
+        if string.order == SectionOrder::FromBit {
+            string.sections.reverse();
+            string.order = SectionOrder::FromTop;
+        }
         string.leave_out_above_hole();
         let bit = string.depth_of_bit();
         for gauge in string.gauges.iter_mut().filter(|gauge| gauge.above_bit.is_some()) {
@@ -66,7 +71,7 @@ impl Scenario {
 impl DrillString {
     /// Length of all sections \[m\].
     pub fn whole_length(&self) -> f64 {
-        self.sections.iter().map(Section::whole_length).sum()
+        self.from_top().map(|(_, section)| section.whole_length()).sum()
     }
 
     /// Measured depth of the bit \[m\].
@@ -78,10 +83,22 @@ impl DrillString {
     /// The sections from the top down at their measured depths.
     pub fn placed_sections(&self) -> impl Iterator<Item = PlacedSection<'_>> {
         let top = self.depth_of_bit() - self.whole_length();
-        self.sections.iter().enumerate().scan(top, |depth, (index, section)| {
+        self.from_top().scan(top, |depth, (index, section)| {
             let top = *depth;
             *depth += section.whole_length();
             Some(PlacedSection { index, section, top, bottom: *depth })
+        })
+    }
+
+    /// Sections from the top down, with their indices.
+    fn from_top(&self) -> impl Iterator<Item = (usize, &Section)> {
+        let count = self.sections.len();
+        (0..count).map(move |place| {
+            let index = match self.order {
+                SectionOrder::FromTop => place,
+                SectionOrder::FromBit => count - 1 - place,
+            };
+            (index, &self.sections[index])
         })
     }
 
@@ -221,6 +238,28 @@ mod tests {
         };
         for (whole, cut) in ends(200.0).iter().zip(ends(77.0)) {
             assert!((whole - cut).abs() < 1e-9, "{whole} m, not {cut}");
+        }
+    }
+
+    #[test]
+    fn both_orders_are_one_string() {
+        for depth in [200.0, 77.0] {
+            let from_top = with_bit_at(depth);
+            let mut from_bit = from_top.clone();
+            from_bit.string.sections.reverse();
+            from_bit.string.order = SectionOrder::FromBit;
+            assert_eq!(from_bit.in_hole(), from_top.in_hole());
+            let ends = |string: &DrillString| -> Vec<f64> {
+                string.placed_sections().map(|placed| placed.bottom).collect()
+            };
+            assert_eq!(ends(&from_bit.string), ends(&from_top.string));
+            let last = from_bit.string.placed_sections().last().unwrap();
+            assert_eq!(
+                (last.index, last.section),
+                (0, &from_bit.string.sections[0]),
+                "the bit is listed first"
+            );
+            assert_eq!(from_bit.gauges(), from_top.gauges());
         }
     }
 

@@ -59,7 +59,7 @@ pub struct Scenario {
     pub name: String,
     /// The hole: survey and diameter.
     pub well: Well,
-    /// The string, from the top down.
+    /// The string, from the top down or from the bit up.
     pub string: DrillString,
     /// The mud inside and outside the string; absent means a dry hole: no fluid effect and no buoyancy, and so no damping of
     /// lateral motion but the structure's and the wall's.
@@ -134,15 +134,19 @@ pub struct SurveyStation {
     pub azimuth_deg: f64,
 }
 
-/// The drillstring: its material, sections from the top, gauges and unbalance masses on them.
+/// The drillstring: its material, sections, gauges and unbalance masses on them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DrillString {
     /// The steel (or other material) of every section and tool joint that has none of its own.
     pub material: Material,
-    /// Sections from the top down, 1 or more, of which the part in the hole is no longer than the survey.
+    /// Sections in the order of `order`, 1 or more, of which the part in the hole is no longer than the survey.
     #[schema(value_type = Vec<WrittenSection>)]
     pub sections: Vec<Section>,
+    /// Order of `sections`: `from_top` down, or `from_bit` up as a tally of the assembly lists them; absent means `from_top`. A section itself is the same in both:
+    /// its blades are above its lower end. Both orders of one string have the same results.
+    #[serde(default)]
+    pub order: SectionOrder,
     /// Measured depth of the bit \[m\], above 0 and at most the length of all sections; absent means that length, all of the string. With less, only the lowest
     /// `bit_depth` metres of the string are in the hole: sections above the top of the hole are left out, the first one in it is cut, and
     /// its tool joints stay where they are from the bit. Gauges, unbalance masses and recorded nodes move with the bit if they are given by `above_bit`; by measured depth they stay
@@ -157,6 +161,17 @@ pub struct DrillString {
     /// of rotation.
     #[serde(default)]
     pub unbalance: Vec<UnbalanceMass>,
+}
+
+/// Order of the sections of a string: `from_top` down, or `from_bit` up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SectionOrder {
+    /// The first section is at the top, the last one ends at the bit.
+    #[default]
+    FromTop,
+    /// The first section ends at the bit, the last one is at the top.
+    FromBit,
 }
 
 /// Linear elastic material. Values for the usual materials, with their source, are in docs/model/beam.md, Section.

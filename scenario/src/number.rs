@@ -119,7 +119,7 @@ numbers!(Scenario: well, string, mud, hydraulics, operation, contact, damping, m
 numbers!(Well: hole_diameter, survey, section);
 numbers!(HoleSection: from, hole_diameter, static_friction, dynamic_friction; without name);
 numbers!(SurveyStation: measured_depth, inclination_deg, azimuth_deg);
-numbers!(DrillString: material, sections, bit_depth, gauges, unbalance);
+numbers!(DrillString: material, sections, bit_depth, gauges, unbalance; without order);
 numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
 numbers!(Section: length, outer_diameter, inner_diameter, mass_per_length, stiffness_outer_diameter, stiffness_inner_diameter,
     blade_diameter, blade_above_end, tool_joint, material, make_up_torque; without name, kind, count, grade);

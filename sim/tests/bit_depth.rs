@@ -214,6 +214,26 @@ fn bit_depths_off_the_string_or_below_the_survey_are_refused() {
 }
 
 #[test]
+fn a_string_listed_from_the_bit_is_the_same_point() {
+    let from_top = vertical();
+    let mut from_bit = from_top.with("string.order", json!("from_bit")).expect("a field");
+    from_bit.string.sections.reverse();
+    assert_eq!(canonical_json(&from_bit), canonical_json(&from_top));
+    assert_eq!(
+        canonical_json(&with_bit_at(&from_bit, 88.0)),
+        canonical_json(&with_bit_at(&from_top, 88.0)),
+        "cut in a piece"
+    );
+    let (found, expected) = (at_rest(&from_bit), at_rest(&from_top));
+    assert_eq!(found.1.displacement, expected.1.displacement);
+    assert_eq!(SoftString::new(&from_bit).expect("valid").bit_depth(), 200.0);
+    // Problems name the section as it is listed.
+    from_bit.string.sections[0].outer_diameter = 0.3;
+    let problems = validate(&from_bit).expect_err("the bit is wider than the hole").0;
+    assert_eq!(problems[0].path, "string.sections[0].outer_diameter");
+}
+
+#[test]
 fn places_above_the_bit_are_those_of_their_depths() {
     let by_depth = preset("paper-200m")
         .expect("shipped preset")

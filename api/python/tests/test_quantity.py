@@ -12,6 +12,7 @@ def test_names_lead_to_their_quantity() -> None:
         ("theta_z_rate_282", "theta_z_rate"),
         ("spread_orbit_radius_rms_49", "orbit_radius_rms"),
         ("bias_line_frequency_hz_49_w1", "line_frequency_hz"),
+        ("line_amplitude_12_5m_above_bit_w1", "line_amplitude"),
         ("string.sections[1].tool_joint.length", "string.sections.tool_joint.length"),
     ]:
         found = quantity(name)

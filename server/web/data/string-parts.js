@@ -4,7 +4,7 @@
 /** A part between two measured depths [m]. @typedef {{kind: Kind, from: number, to: number}} Part */
 
 /** @typedef {{name?: string, kind?: Kind, count?: number, length: number, tool_joint?: {length: number} | null}} Section */
-/** The string of a scenario: its sections in their order, and the depth of the bit. @typedef {{sections: Section[], bit_depth?: number | null}} DrillString */
+/** The string of a scenario: its sections in their order, and the depth of the bit. @typedef {{sections: Section[], order?: string, bit_depth?: number | null}} DrillString */
 
 /**
  * The parts of a string that are in the hole, from the top.
@@ -45,18 +45,20 @@ export function componentAt(string, depth) {
 }
 
 /**
- * Sections from the top down with the measured depths of their ends [m]: negative above the hole, NaN from a length on that is no number.
+ * Sections from the top down with their indices and the measured depths of their ends [m]: negative above the hole, NaN from a length on that is
+ * no number.
  * @param {DrillString} string
  */
-export function placedSections({ sections, bit_depth }) {
+export function placedSections({ sections, order, bit_depth }) {
   const lengthOf = (/** @type {Section} */ { count = 1, length }) =>
     typeof length === "number" ? count * length : NaN;
   const whole = sections.reduce((length, section) => length + lengthOf(section), 0);
   let bottom = bit_depth ? Math.min(bit_depth - whole, 0) : 0;
-  return sections.map((section) => {
+  const listed = sections.map((section, index) => ({ section, index }));
+  return (order === "from_bit" ? listed.toReversed() : listed).map(({ section, index }) => {
     const top = bottom;
     bottom += lengthOf(section);
-    return { section, top, bottom };
+    return { index, section, top, bottom };
   });
 }
 

@@ -1,4 +1,4 @@
-// The string of a new sweep as tables: its sections from the top (the tally), gauges and unbalance masses.
+// The string of a new sweep as tables: its sections (the tally), gauges and unbalance masses.
 
 import { partsOf, placedSections } from "../data/string-parts.js";
 import { inputUnit, number, say } from "../data/units.js";
@@ -147,8 +147,10 @@ const CHOICES = {
 export function stringPart(signal) {
   /** @type {import("./fields.js").Edited} */
   let shown;
-  const taken = (/** @type {{sections: any[]}} */ { sections }) =>
-    shown.set(SECTIONS, sections.map(withoutNulls));
+  const taken = (/** @type {{sections: any[]}} */ { sections }) => {
+    const fromTop = sections.map(withoutNulls);
+    shown.set(SECTIONS, shown.value("string.order") === "from_bit" ? fromTop.reverse() : fromTop);
+  };
   const file = importFile("tally", CHOICES, () => ({}), taken, signal);
   return (edited) => {
     shown = edited;
@@ -171,19 +173,21 @@ function withoutNulls(value) {
 function stringFields(edited, file) {
   /** @type {any[]} */
   const sections = edited.value(SECTIONS) ?? [];
-  const bit_depth = edited.value("string.bit_depth");
+  const [order, bit_depth] = ["order", "bit_depth"].map((name) => edited.value(`string.${name}`));
   const below = [
     ...ownMaterials(sections, edited),
     lengthLine(sections, edited),
-    picturePart({ sections, bit_depth }),
+    picturePart({ sections, order, bit_depth }),
     file,
   ];
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
     texts: (/** @type {any[]} */ rows) =>
-      placedSections({ sections: rows, bit_depth }).map(({ bottom }) =>
-        Number.isFinite(bottom) && bottom > 0 ? number(readersNumber("measured_depth", bottom), 6) : "–",
-      ),
+      placedSections({ sections: rows, order, bit_depth })
+        .toSorted((a, b) => a.index - b.index)
+        .map(({ bottom }) =>
+          Number.isFinite(bottom) && bottom > 0 ? number(readersNumber("measured_depth", bottom), 6) : "–",
+        ),
   };
   return TABLES.map((table) =>
     table.path === SECTIONS ? tablePart({ ...table, shows }, edited, below) : tablePart(table, edited),

@@ -3,8 +3,8 @@
 use drillsweep_scenario::{
     Accuracy, Adhesion, ContactLaw, DrillString, Effect, Effects, ElementLengths, Gauge, Integrator,
     Material, Mesh, Mud, NodeChoice, Operation, Outputs, RayleighDamping, Recording, RegimeChoice, Scenario,
-    Section, SectionKind, Statics, SurveyStation, Switch, TimeStepping, ToolJoint, TopCondition,
-    UnbalanceMass, WallLaw, Well, preset,
+    Section, SectionKind, SectionOrder, Statics, SurveyStation, Switch, TimeStepping, ToolJoint,
+    TopCondition, UnbalanceMass, WallLaw, Well, preset,
 };
 use drillsweep_sim::string::StringMesh;
 
@@ -99,8 +99,14 @@ fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
             Section { count, tool_joint, ..Section::plain(kind, length, outer_diameter, inner_diameter) }
         })
         .collect();
-    let mut string =
-        DrillString { material, sections, bit_depth: None, gauges: Vec::new(), unbalance: Vec::new() };
+    let mut string = DrillString {
+        material,
+        sections,
+        order: SectionOrder::FromTop,
+        bit_depth: None,
+        gauges: Vec::new(),
+        unbalance: Vec::new(),
+    };
     let length = total_length(&string);
     for _ in 0..draw.below(5) {
         let measured_depth = if draw.chance(0.3) { length } else { length * draw.between(0.02, 1.0) };

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import pint
 
 _VARIANT = re.compile(r"^(?:spread|ensemble_mean|confidence|reference|bias)_(.+)$")
-# A node by its number, by its depth or by its distance above the bit in metres, and a spectrum window: `_49`, `_57_7m`, `_980m_w2`,
-# `_12_5m_above_bit`.
+# A node by its number, its depth or its distance above the bit in metres, and a spectrum window: `_49`, `_57_7m`,
+# `_980m_w2`, `_12_5m_above_bit`.
 _PLACE = re.compile(r"(?:_\d+(?:_\d+)?m(?:_above_bit)?|_\d+)?(?:_w\d+)?$")
 
 

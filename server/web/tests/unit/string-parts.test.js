@@ -39,6 +39,8 @@ test("a string with its bit above its end loses pipe at its top", () => {
     ["tool_joint", 2, 2.3],
   ]);
   assert.deepEqual(parts.at(-1), ["bit", 11.5, 12]);
+  const fromBit = { ...string, sections: sections.toReversed(), order: "from_bit" };
+  assert.deepEqual(partsOf(fromBit), partsOf(string));
   assert.deepEqual(
     [0, 11, 12].map((depth) => componentAt(string, depth)),
     ["pipe", "pipe", "bit"],

@@ -42,6 +42,7 @@ const preload = (() => {
       string: "point/string.js",
       well: "point/well.js",
       energy: "point/energy.js",
+      hydraulics: "point/hydraulics.js",
       about: "point/about.js",
     },
   };

@@ -1,4 +1,4 @@
-// A point: what it is, and its profiles, motion, energy, well, and what it cost.
+// A point: what it is, and its profiles, motion, well, energy, hydraulics, and what it cost.
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
@@ -29,6 +29,7 @@ const PARTS = [
   ["string", "String in motion", async () => (await import("./string.js")).string],
   ["well", "Well", async () => (await import("./well.js")).well],
   ["energy", "Energy", async () => (await import("./energy.js")).energy],
+  ["hydraulics", "Hydraulics", async () => (await import("./hydraulics.js")).hydraulics],
   ["about", "Effects, accuracy, downloads", async () => (await import("./about.js")).about],
 ];
 
@@ -36,7 +37,7 @@ const PARTS = [
 const POLL_MS = 3000;
 
 /** Views whose element is not made of panels. */
-const IN_PANEL = ["profiles", "well", "energy"];
+const IN_PANEL = ["profiles", "well", "energy", "hydraulics"];
 
 /** Sweep, number and path of a point. @typedef {{sweep: any, ordinal: string, path: string, query: URLSearchParams}} Place */
 
@@ -69,7 +70,8 @@ export async function show(main, route, signal) {
     return requestLines(askedOf(path, request), start + request.python);
   });
   const drawn = () => taken.dispatchEvent(new Event("redraw"));
-  const tabs = PARTS.map(([entry, text]) =>
+  const offered = PARTS.filter(([entry]) => entry !== "hydraulics" || point.scenario.mud);
+  const tabs = offered.map(([entry, text]) =>
     h("a", { "data-view": entry, "aria-current": entry === view && "page" }, text),
   );
   const follow = (/** @type {URLSearchParams} */ query) => {

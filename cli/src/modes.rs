@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_quantity::UnitChoice;
+use drillsweep_quantity::columns::{FREQUENCY, MEASURED_DEPTH};
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
 use drillsweep_sim::solve::statics::Equilibrium;
@@ -10,6 +12,7 @@ use drillsweep_sim::validation::validate;
 
 use crate::print;
 use crate::scenario::ScenarioArguments;
+use crate::text::Shown;
 
 #[derive(Args)]
 pub(crate) struct ModesArguments {
@@ -24,7 +27,10 @@ pub(crate) struct ModesArguments {
     /// Show only the modes that grow.
     #[arg(long)]
     growing: bool,
-    /// Print the modes as JSON.
+    /// Units of `measured_depth` and `frequency`: `si`, `field`, and `COLUMN:UNIT`, separated by commas.
+    #[arg(long, value_parser = UnitChoice::parse, default_value = "si", hide_default_value = true, conflicts_with = "json")]
+    units: UnitChoice,
+    /// Print the modes as JSON, in SI units.
     #[arg(long)]
     json: bool,
 }
@@ -43,47 +49,57 @@ pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
     if arguments.json {
         print(&serde_json::to_string_pretty(&found)?);
     } else {
-        print(text(&scenario.name, &found)?.trim_end());
+        print(text(&scenario.name, &found, &arguments.units)?.trim_end());
     }
     Ok(())
 }
 
-fn text(name: &str, found: &Modes) -> anyhow::Result<String> {
+fn text(name: &str, found: &Modes, units: &UnitChoice) -> anyhow::Result<String> {
     let mut text = String::new();
     let name = if name.is_empty() { "the scenario" } else { name };
+    let [depth, extent] = [0.01, 0.1].map(|resolution| Shown::new(units, &MEASURED_DEPTH, resolution));
+    let [frequency, limit] = [1e-4, 1e-3].map(|resolution| Shown::new(units, &FREQUENCY, resolution));
+    let place = format!("most at {}", depth.symbol());
+    let width = place.len();
     writeln!(text, "modes of {name} about its equilibrium, contacts closed and sliding")?;
     writeln!(
         text,
-        "{:>10} {:>11} {:>10} {:>7} {:>7} {:>7} {:>7}  {:>9}  nine tenths of the energy",
-        "Hz", "growth 1/s", "kind", "lateral", "torsion", "axial", "whirl", "most at m"
+        "{:>10} {:>11} {:>10} {:>7} {:>7} {:>7} {:>7}  {place}  nine tenths of the energy",
+        frequency.symbol(),
+        "growth 1/s",
+        "kind",
+        "lateral",
+        "torsion",
+        "axial",
+        "whirl"
     )?;
     for mode in &found.modes {
         writeln!(
             text,
-            "{:>10.4} {:>+11.4} {:>10} {:>7.3} {:>7.3} {:>7.3} {:>+7.2}  {:>9.2}  {:.1} to {:.1} m",
-            mode.frequency_hz,
+            "{:>10} {:>+11.4} {:>10} {:>7.3} {:>7.3} {:>7.3} {:>+7.2}  {:>width$}  {} to {}",
+            frequency.number(mode.frequency_hz),
             mode.growth_rate,
             mode.kind.name(),
             mode.lateral_share,
             mode.torsional_share,
             mode.axial_share,
             mode.whirl,
-            mode.measured_depth,
-            mode.extent[0],
-            mode.extent[1]
+            depth.number(mode.measured_depth),
+            extent.number(mode.extent[0]),
+            extent.with_unit(mode.extent[1])
         )?;
     }
-    let (to_hz, rate) = (found.complete_to_hz, found.complete_to_rate);
+    let (to, rate) = (limit.with_unit(found.complete_to_hz), found.complete_to_rate);
     if found.completeness == Completeness::Counted {
         writeln!(
             text,
-            "complete to {to_hz:.3} Hz for growth and decay below {rate:.3} 1/s, by a count of the eigenvalues; overdamped motions are left \
+            "complete to {to} for growth and decay below {rate:.3} 1/s, by a count of the eigenvalues; overdamped motions are left \
              out"
         )?;
     } else {
         writeln!(
             text,
-            "searched to {to_hz:.3} Hz for growth and decay below {rate:.3} 1/s: {}; overdamped motions are left out",
+            "searched to {to} for growth and decay below {rate:.3} 1/s: {}; overdamped motions are left out",
             found.completeness
         )?;
     }
@@ -114,9 +130,10 @@ mod tests {
             complete_to_rate: 1.5,
             completeness: Completeness::Counted,
         };
-        let counted = text("paper-200m", &found).unwrap();
+        let [si, field] = ["si", "field"].map(|units| UnitChoice::parse(units).unwrap());
+        let [counted, in_feet] = [&si, &field].map(|units| text("paper-200m", &found, units).unwrap());
         found.modes.clear();
         found.completeness = Completeness::Missing(2);
-        insta::assert_snapshot!([counted, text("", &found).unwrap()].join("\n"));
+        insta::assert_snapshot!([counted, in_feet, text("", &found, &si).unwrap()].join("\n"));
     }
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use clap::Args;
+use drillsweep_quantity::UnitChoice;
+use drillsweep_quantity::columns::{MEASURED_DEPTH, TORQUE_TOP_BREAK_AWAY, TORQUE_TOP_ROTATING};
 use drillsweep_scenario::Problems;
 use drillsweep_sim::solve::step::step_problem;
 use drillsweep_sim::validation::validate;
@@ -15,12 +17,17 @@ use serde_json::json;
 use crate::print;
 use crate::scenario::ScenarioArguments;
 use crate::submit::megabytes;
+use crate::text::Shown;
 
 #[derive(Args)]
 pub(crate) struct PlanArguments {
     #[command(flatten)]
     scenario: ScenarioArguments,
-    /// Print the plan as JSON.
+    /// Units of lengths (as `measured_depth`) and torques (`torque_top_break_away`, `torque_top_rotating`): `si`, `field`, and `COLUMN:UNIT`, separated by
+    /// commas.
+    #[arg(long, value_parser = UnitChoice::parse, default_value = "si", hide_default_value = true, conflicts_with = "json")]
+    units: UnitChoice,
+    /// Print the plan as JSON, in SI units.
     #[arg(long)]
     json: bool,
 }
@@ -42,7 +49,7 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
     } else {
-        print(plan_text(&plan)?.trim_end());
+        print(plan_text(&plan, &arguments.units)?.trim_end());
         print(&format!(
             "this plan: {:.1} s to measure the machine, {:.1} s for the equilibrium and what follows from it",
             measured.as_secs_f64(),
@@ -52,7 +59,7 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
+fn plan_text(plan: &Plan, units: &UnitChoice) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     writeln!(text, "effects")?;
     for decision in &plan.effects {
@@ -66,10 +73,14 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         )?;
     }
     let statics = plan.statics_cpu_time.unwrap_or(0.0) * 1e3;
+    let length = Shown::new(units, &MEASURED_DEPTH, 1e-3);
     writeln!(
         text,
-        "{} elements of {:.3} to {:.3} m, {} nodes",
-        plan.elements, plan.shortest_element, plan.longest_element, plan.nodes
+        "{} elements of {} to {}, {} nodes",
+        plan.elements,
+        length.number(plan.shortest_element),
+        length.with_unit(plan.longest_element),
+        plan.nodes
     )?;
     writeln!(text, "equilibrium with hydraulics: about {statics:.0} ms")?;
     let Footprint { memory_bytes, table_bytes, snapshot_bytes } = plan.footprint;
@@ -140,8 +151,9 @@ fn plan_text(plan: &Plan) -> Result<String, std::fmt::Error> {
         )?;
     }
     if let (Some(break_away), Some(rotating)) = (plan.torque_top_break_away, plan.torque_top_rotating) {
-        let (break_away, rotating) = (break_away / 1e3, rotating / 1e3);
-        writeln!(text, "torque at the top: {break_away:.3} kN m at break-away, {rotating:.3} kN m rotating")?;
+        let break_away = Shown::new(units, &TORQUE_TOP_BREAK_AWAY, 1.0).with_unit(break_away);
+        let rotating = Shown::new(units, &TORQUE_TOP_ROTATING, 1.0).with_unit(rotating);
+        writeln!(text, "torque at the top: {break_away} at break-away, {rotating} rotating")?;
     }
     if let Some(torsion) = plan.undamped_torsion.filter(|torsion| !torsion.up_to_the_mesh) {
         writeln!(text, "{torsion}")?;
@@ -160,7 +172,7 @@ mod tests {
 
     use super::*;
 
-    fn text(preset: &str, changes: &[(&str, Value)]) -> String {
+    fn text(preset: &str, changes: &[(&str, Value)], units: &str) -> String {
         let mut request = ScenarioRequest::preset(preset);
         request.set.extend(changes.iter().map(|(path, value)| ((*path).to_owned(), value.clone())));
         let scenario = request.resolve().unwrap();
@@ -171,19 +183,20 @@ mod tests {
             large_mesh_factor: 1.2,
             along_elements: [1.1; 4],
         };
-        plan_text(&Plan::new(&scenario, Some(&speed)).unwrap().with_equilibrium(&scenario)).unwrap()
+        let plan = Plan::new(&scenario, Some(&speed)).unwrap().with_equilibrium(&scenario);
+        plan_text(&plan, &UnitChoice::parse(units).unwrap()).unwrap()
     }
 
     #[test]
     fn a_plan_has_effects_mesh_and_methods() {
-        insta::assert_snapshot!(text("paper-200m", &[]));
+        insta::assert_snapshot!(text("paper-200m", &[], "si"));
     }
 
     #[test]
     fn a_plan_of_a_study_has_its_runs_and_a_plan_of_statics_has_none() {
         let study = [("cost_study", json!({"presets": ["draft"], "methods": []})), ("duration", json!(2))];
         let statics = [("effects.transient", json!("off")), ("effects.torsion", json!("off"))];
-        let texts = [text("paper-200m", &study), text("paper-200m", &statics)];
+        let texts = [text("paper-200m", &study, "si"), text("paper-200m", &statics, "field")];
         let without_effects =
             texts.each_ref().map(|text| text.split_once("equilibrium with").expect("after the effects").1);
         insta::assert_snapshot!(without_effects.join("\n"));

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::fmt::{Display, Write as _};
 
+use drillsweep_quantity::{Quantity, Unit, UnitChoice};
+
 /// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Alignment {
@@ -83,6 +85,39 @@ pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// Unit of a text's numbers, with their decimals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shown {
+    unit: Unit,
+    decimals: usize,
+}
+
+impl Shown {
+    /// The unit in which a reader's choice shows a quantity, SI with prefixes without one. Its decimals keep differences of `resolution`, in the unit in
+    /// which the quantity is kept.
+    pub(crate) fn new(choice: &UnitChoice, quantity: &Quantity, resolution: f64) -> Self {
+        let unit = choice.shown(quantity.name).unwrap_or(Unit { symbol: "", size: 1.0 });
+        // Rounding of a power of ten adds no decimal.
+        let decimals = ((unit.size / resolution).log10() - 1e-9).ceil().max(0.0) as usize;
+        Self { unit, decimals }
+    }
+
+    /// A value without its unit.
+    pub(crate) fn number(&self, value: f64) -> String {
+        format!("{:.*}", self.decimals, self.unit.of(value))
+    }
+
+    /// A value with its unit.
+    pub(crate) fn with_unit(&self, value: f64) -> String {
+        format!("{} {}", self.number(value), self.unit.symbol)
+    }
+
+    /// Symbol of the unit.
+    pub(crate) fn symbol(&self) -> &'static str {
+        self.unit.symbol
+    }
+}
+
 /// A number to six significant digits, as short as it can be; whole numbers in full.
 pub(crate) fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
@@ -134,6 +169,18 @@ mod tests {
             texts,
             ["0.3", "0.333333", "1234567", "-0.04", "0", "8.33333e-10", "123457", "6.76667e10", "600"]
         );
+    }
+
+    #[test]
+    fn shown_numbers_keep_differences_in_any_unit() {
+        use drillsweep_quantity::columns::{HOOK_LOAD, SURFACE_TORQUE};
+        let load = |units: &str| Shown::new(&UnitChoice::parse(units).unwrap(), &HOOK_LOAD, 100.0);
+        assert_eq!(load("si").with_unit(51_723.0), "51.7 kN");
+        // Steps of 44 N; one decimal would have steps of 445 N.
+        assert_eq!(load("field").with_unit(51_723.0), "11.63 klbf");
+        assert_eq!(load("field,hook_load:N").with_unit(51_723.0), "51723 N");
+        let usual = Shown::new(&UnitChoice::default(), &SURFACE_TORQUE, 10.0);
+        assert_eq!((usual.number(-1_480.0).as_str(), usual.symbol()), ("-1.48", "kN m"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Plan of a scenario: estimates of its cost, without running it.
 
 use std::fmt::Write as _;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use drillsweep_quantity::UnitChoice;
@@ -12,6 +12,7 @@ use drillsweep_sim::validation::validate;
 use drillsweep_study::footprint::Footprint;
 use drillsweep_study::plan::{Plan, PlannedAccuracy};
 use drillsweep_worker::calibrate;
+use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::print;
@@ -32,6 +33,9 @@ pub(crate) struct PlanArguments {
     json: bool,
 }
 
+/// Time between two drawings of the part in work.
+const REDRAWN: Duration = Duration::from_millis(200);
+
 /// Prints the plan of a scenario, with processor times from some short runs on this machine.
 pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
@@ -41,11 +45,22 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     if let Some(problem) = step_problem(&scenario) {
         return Err(Problems::from(problem).into());
     }
+    // It draws on a terminal only.
+    let bar =
+        ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {msg}, {elapsed}")?);
+    let begin = |part: &'static str| {
+        bar.reset_elapsed();
+        bar.set_message(part);
+    };
     let start = Instant::now();
+    begin("speed of this machine");
+    bar.enable_steady_tick(REDRAWN);
     let speed = calibrate()?;
     let measured = start.elapsed();
-    let plan = Plan::new(&scenario, Some(&speed))?.with_equilibrium(&scenario);
+    let plan = Plan::new(&scenario, Some(&speed))?;
+    let plan = plan.with_equilibrium_by_parts(&scenario, |part| begin(part.name()));
     let planned = start.elapsed() - measured;
+    bar.finish_and_clear();
     if arguments.json {
         print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
     } else {

@@ -65,6 +65,31 @@ pub struct Plan {
     pub warnings: Vec<String>,
 }
 
+/// Parts of [`Plan::with_equilibrium`], each of which may take seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlanningPart {
+    /// The equilibrium from which the run starts.
+    Equilibrium,
+    /// Torsional modes that velocity-weakening friction excites.
+    Torsion,
+    /// The equilibrium of the other friction at rest, for the torque at the top.
+    OtherFriction,
+    /// Error of the equilibrium for its mesh, from two finer ones.
+    Mesh,
+}
+
+impl PlanningPart {
+    /// Name for readers who wait for the part.
+    pub fn name(self) -> &'static str {
+        match self {
+            PlanningPart::Equilibrium => "equilibrium",
+            PlanningPart::Torsion => "torsional modes",
+            PlanningPart::OtherFriction => "equilibrium of the other friction at rest",
+            PlanningPart::Mesh => "error of the mesh",
+        }
+    }
+}
+
 /// Size and cost of one accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PlannedAccuracy {
@@ -231,17 +256,31 @@ impl Plan {
     /// The plan with the quantities of the scenario's equilibrium, which takes as long as finding it. If there is none, the run reports
     /// that.
     #[must_use]
-    pub fn with_equilibrium(mut self, scenario: &Scenario) -> Self {
+    pub fn with_equilibrium(self, scenario: &Scenario) -> Self {
+        self.with_equilibrium_by_parts(scenario, |_| ())
+    }
+
+    /// As [`Plan::with_equilibrium`], with a call of `begin` at the start of each part.
+    #[must_use]
+    pub fn with_equilibrium_by_parts(
+        mut self,
+        scenario: &Scenario,
+        mut begin: impl FnMut(PlanningPart),
+    ) -> Self {
+        begin(PlanningPart::Equilibrium);
         let Some(model) = Model::new(scenario).ok().filter(|model| model.effects.transient) else {
             return self;
         };
         let Ok(equilibrium) = Equilibrium::find(&model) else { return self };
+        begin(PlanningPart::Torsion);
         self.undamped_torsion = UndampedTorsion::about(&model, &equilibrium);
+        begin(PlanningPart::OtherFriction);
         let start = scenario.statics.friction;
         let other = equilibrium.with_friction_at_rest(&model, start.other());
         let statics = StaticsSummary::new(&model, &equilibrium, start, other.as_ref().ok());
         self.torque_top_break_away = statics.torque_top_break_away;
         self.torque_top_rotating = statics.torque_top_rotating;
+        begin(PlanningPart::Mesh);
         self.mesh_error = Some(MeshEstimate::of(&model, &equilibrium));
         self.warnings.extend(static_stability(&model, &equilibrium).and_then(|found| found.warning()));
         for (planned, (_, accuracy)) in self.accuracies.iter_mut().zip(accuracies(scenario)) {
@@ -499,6 +538,27 @@ mod tests {
         scenario.mesh = Mesh::auto(1.0);
         let plan = Plan::new(&scenario, None).unwrap();
         assert!(plan.accuracies.iter().all(|planned| planned.elements == plan.elements));
+    }
+
+    #[test]
+    fn parts_of_planning_begin_once_each_and_an_unplanned_run_has_only_the_first() {
+        let parts_of = |scenario: &Scenario| {
+            let mut parts = Vec::new();
+            let plan = Plan::new(scenario, None).unwrap();
+            let planned = plan.clone().with_equilibrium_by_parts(scenario, |part| parts.push(part));
+            assert_eq!(planned, plan.with_equilibrium(scenario));
+            parts
+        };
+        let mut scenario = paper();
+        let [first, others @ ..] = [
+            PlanningPart::Equilibrium,
+            PlanningPart::Torsion,
+            PlanningPart::OtherFriction,
+            PlanningPart::Mesh,
+        ];
+        assert_eq!(parts_of(&scenario), [&[first][..], &others].concat());
+        scenario.effects.transient = Switch::Off;
+        assert_eq!(parts_of(&scenario), [first]);
     }
 
     #[test]

@@ -130,7 +130,12 @@ impl TextUnits {
     }
 }
 
-fn text(name: &str, string: &str, rows: &[BroomstickRow], units: &UnitChoice) -> Result<String, std::fmt::Error> {
+fn text(
+    name: &str,
+    string: &str,
+    rows: &[BroomstickRow],
+    units: &UnitChoice,
+) -> Result<String, std::fmt::Error> {
     let name = if name.is_empty() { "the scenario" } else { name };
     let units = TextUnits::new(units);
     let mut text = format!("torque and drag of {name}, {string}\n");
@@ -220,7 +225,10 @@ mod tests {
             is_stiff: false,
         };
         let rows = broomstick.rows(&scenario).unwrap();
-        let text = |units: &str| text("paper-200m", "a soft string in still mud", &rows, &UnitChoice::parse(units).unwrap()).unwrap();
+        let text = |units: &str| {
+            text("paper-200m", "a soft string in still mud", &rows, &UnitChoice::parse(units).unwrap())
+                .unwrap()
+        };
         insta::assert_snapshot!(text("si"));
         insta::assert_snapshot!("field_units", text("field,bit_depth:m"));
     }
@@ -228,14 +236,13 @@ mod tests {
     #[test]
     fn csv_has_chosen_units_in_its_first_line() {
         let settings = DragSettings::default();
-        let broomstick =
-            Broomstick {
-                modes: vec![DragMode::Rotate],
-                depths: vec![152.4],
-                friction: Vec::new(),
-                settings,
-                is_stiff: false,
-            };
+        let broomstick = Broomstick {
+            modes: vec![DragMode::Rotate],
+            depths: vec![152.4],
+            friction: Vec::new(),
+            settings,
+            is_stiff: false,
+        };
         let rows = broomstick.rows(&preset("paper-200m").unwrap()).unwrap();
         let line = |units: &str, line: usize| {
             let text = csv_text(&rows, &UnitChoice::parse(units).unwrap()).unwrap();

@@ -71,7 +71,7 @@ impl Scenario {
 impl DrillString {
     /// Length of all sections \[m\].
     pub fn whole_length(&self) -> f64 {
-        self.from_top().map(|(_, section)| section.whole_length()).sum()
+        self.top_down().map(|(_, section)| section.whole_length()).sum()
     }
 
     /// Measured depth of the bit \[m\].
@@ -83,7 +83,7 @@ impl DrillString {
     /// The sections from the top down at their measured depths.
     pub fn placed_sections(&self) -> impl Iterator<Item = PlacedSection<'_>> {
         let top = self.depth_of_bit() - self.whole_length();
-        self.from_top().scan(top, |depth, (index, section)| {
+        self.top_down().scan(top, |depth, (index, section)| {
             let top = *depth;
             *depth += section.whole_length();
             Some(PlacedSection { index, section, top, bottom: *depth })
@@ -91,7 +91,7 @@ impl DrillString {
     }
 
     /// Sections from the top down, with their indices.
-    fn from_top(&self) -> impl Iterator<Item = (usize, &Section)> {
+    fn top_down(&self) -> impl Iterator<Item = (usize, &Section)> {
         let count = self.sections.len();
         (0..count).map(move |place| {
             let index = match self.order {

@@ -54,7 +54,7 @@ pub(crate) struct ForcedQuery {
 }
 
 impl ForcedQuery {
-    fn request(&self) -> std::result::Result<ForcedRequest, ProblemDetails> {
+    fn request(&self) -> Result<ForcedRequest> {
         let excitation = match self.depth {
             Some(measured_depth) => Excitation::Turning {
                 measured_depth,
@@ -63,7 +63,7 @@ impl ForcedQuery {
             },
             None if self.force.is_some() || self.per_revolution.is_some() => {
                 let detail = "a force needs its measured depth in m; without `depth` the unbalance of the scenario excites the string";
-                return Err(ProblemDetails::invalid_parameter("depth", None, detail));
+                return Err(ProblemDetails::invalid_parameter("depth", None, detail).into());
             }
             None => Excitation::Unbalance,
         };

@@ -3,7 +3,7 @@
 use drillsweep_quantity::columns::*;
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::model::Model;
-use drillsweep_sim::solve::modes::{ComponentResponse, by_component, forced_response};
+use drillsweep_sim::solve::modes::{ComponentResponse, component_responses};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_table::{Column, Table};
 
@@ -40,9 +40,8 @@ impl ForcedRequest {
             [] => USUAL_SPEEDS.map(f64::from).collect(),
             speeds => speeds.to_vec(),
         };
-        let responses = forced_response(&model, &equilibrium, &self.excitation, &speeds)
-            .map_err(|error| refused(error.to_string()))?;
-        Ok(by_component(&model, &responses))
+        component_responses(&model, &equilibrium, &self.excitation, &speeds)
+            .map_err(|error| refused(error.to_string()))
     }
 
     /// The same as a table, one row a component and speed.

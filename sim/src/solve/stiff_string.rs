@@ -136,8 +136,9 @@ fn in_case(
         operation.rotation_speed_rpm = 1.0;
     }
     let [weight_on_bit, torque_on_bit] = mode.bit_loads(&scenario.operation);
-    (operation.weight_on_bit, operation.torque_on_bit) =
-        (weight_on_bit, torque_on_bit.copysign(scenario.operation.torque_on_bit));
+    operation.weight_on_bit = weight_on_bit;
+    // The rock opposes the rotation.
+    operation.torque_on_bit = if operation.rotation_speed_rpm < 0.0 { torque_on_bit } else { -torque_on_bit };
     let contact = &mut moving.contact;
     match friction {
         Some(friction) if !(friction.is_finite() && friction >= 0.0) => {

@@ -1,6 +1,7 @@
 //! Response of small motions about the equilibrium to forces that turn with the string, over the speed of rotation.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use nalgebra::Complex;
 use serde::Serialize;
@@ -12,6 +13,7 @@ use crate::math::dof::{DOFS, THETA_X, THETA_Y, U, V};
 use crate::math::linalg::BlockTridiagonal;
 use crate::solve::model::{Model, StringElement};
 use crate::solve::statics::{Equilibrium, StaticsError};
+use crate::string::MeshElement;
 
 /// Largest number of speeds of one response.
 pub const MOST_SPEEDS: usize = 500;
@@ -127,17 +129,45 @@ pub enum ForcedError {
     },
 }
 
-/// Response of a model to an excitation at each of several speeds of rotation \[rpm\], about one equilibrium: contacts that are closed there stay closed. The
-/// flow past the string is that of each speed.
+/// Largest responses of each component from the top, at every speed of rotation \[rpm\] in turn, to an excitation of a model about one equilibrium:
+/// contacts that are closed there stay closed. The flow past the string is that of each speed.
 ///
 /// # Errors
 /// A speed, the place or the size of the force is out of range, or the string has an undamped resonance.
-pub fn forced_response(
+pub fn component_responses(
     model: &Model,
     equilibrium: &Equilibrium,
     excitation: &Excitation,
     speeds_rpm: &[f64],
-) -> Result<Vec<SpeedResponse>, ForcedError> {
+) -> Result<Vec<ComponentResponse>, ForcedError> {
+    let components = Component::of(model);
+    let mut by_component = vec![Vec::with_capacity(speeds_rpm.len()); components.len()];
+    // A response of all nodes is kept for one speed only.
+    for response in forced_response(model, equilibrium, excitation, speeds_rpm)? {
+        let response = response?;
+        for (component, rows) in components.iter().zip(&mut by_component) {
+            rows.push(component.largest(model, &response));
+        }
+    }
+    for rows in &mut by_component {
+        for i in 1..rows.len().saturating_sub(1) {
+            let [before, here, after] = [i - 1, i, i + 1].map(|i| rows[i].displacement[0]);
+            rows[i].is_critical = here > before && here >= after;
+        }
+    }
+    Ok(by_component.into_iter().flatten().collect())
+}
+
+/// Responses of all nodes and elements at one speed after the other.
+///
+/// # Errors
+/// As [`component_responses`].
+pub fn forced_response<'a>(
+    model: &'a Model,
+    equilibrium: &'a Equilibrium,
+    excitation: &'a Excitation,
+    speeds_rpm: &'a [f64],
+) -> Result<impl Iterator<Item = Result<SpeedResponse, ForcedError>> + 'a, ForcedError> {
     ModesError::require_no_axial_speed(model.body_motion())?;
     if speeds_rpm.len() > MOST_SPEEDS {
         return Err(ForcedError::TooManySpeeds(speeds_rpm.len()));
@@ -146,72 +176,65 @@ pub fn forced_response(
         return Err(ForcedError::Speed(speed));
     }
     let node = excitation.node(model)?;
-    let at_speed = |&speed: &f64| {
+    Ok(speeds_rpm.iter().map(move |&speed| {
         let turning = model.turning_at(speed);
         let equilibrium = equilibrium.with_flows_of(&turning)?;
         at_speed(&turning, &equilibrium, excitation, node)
-    };
-    speeds_rpm.iter().map(at_speed).collect()
+    }))
 }
 
-/// Largest responses of each component from the top, at every speed in turn.
-pub fn by_component(model: &Model, responses: &[SpeedResponse]) -> Vec<ComponentResponse> {
-    let (elements, sections) = (&model.mesh.elements, &model.scenario.string.sections);
-    let mut found = Vec::new();
-    for of_section in elements.chunk_by(|a, b| a.section == b.section) {
-        let section = of_section[0].section;
-        let first = elements.partition_point(|element| element.section < section);
-        let range = first..first + of_section.len();
-        let component = match &sections[section] {
-            named if !named.name.is_empty() => named.name.clone(),
-            other => format!("{} {}", other.kind.name(), section + 1),
-        };
-        let at = found.len();
-        found.extend(responses.iter().map(|response| {
-            let nodes = range.start..=range.end;
-            let largest = |value: &dyn Fn(usize) -> f64,
-                           depth: &dyn Fn(usize) -> f64,
-                           places: &mut dyn Iterator<Item = usize>| {
-                places.map(|place| [value(place), depth(place)]).fold([0.0, f64::NAN], |most, next| {
-                    if next[0] > most[0] || most[1].is_nan() { next } else { most }
-                })
+/// Elements of a section of the string.
+struct Component {
+    name: String,
+    /// Elements of the mesh; its nodes are those of their ends.
+    elements: Range<usize>,
+}
+
+impl Component {
+    /// Components of a model from the top.
+    fn of(model: &Model) -> Vec<Self> {
+        let sections = &model.scenario.string.sections;
+        let mut first = 0;
+        let of_section = |elements: &[MeshElement]| {
+            let section = elements[0].section;
+            let name = match &sections[section] {
+                named if !named.name.is_empty() => named.name.clone(),
+                other => format!("{} {}", other.kind.name(), section + 1),
             };
-            let depth_of_node = |node: usize| model.mesh.nodes[node].measured_depth;
-            let middle = |e: usize| elements[e].top + 0.5 * elements[e].length;
-            let displacement =
-                largest(&|node| response.nodes[node].displacement, &depth_of_node, &mut nodes.clone());
-            let omega = 2.0 * PI * response.frequency_hz;
-            ComponentResponse {
-                component: component.clone(),
-                rotation_speed_rpm: response.rotation_speed_rpm,
-                frequency_hz: response.frequency_hz,
-                is_critical: false,
-                displacement,
-                acceleration: omega * omega * displacement[0],
-                side_force: largest(
-                    &|node| response.nodes[node].side_force,
-                    &depth_of_node,
-                    &mut nodes.clone(),
-                ),
-                bending_moment: largest(
-                    &|e| response.elements[e].bending_moment,
-                    &middle,
-                    &mut range.clone(),
-                )[0],
-                bending_stress: largest(
-                    &|e| response.elements[e].bending_stress,
-                    &middle,
-                    &mut range.clone(),
-                ),
-            }
-        }));
-        let own = &mut found[at..];
-        for i in 1..own.len().saturating_sub(1) {
-            let [before, here, after] = [i - 1, i, i + 1].map(|i| own[i].displacement[0]);
-            own[i].is_critical = here > before && here >= after;
+            first += elements.len();
+            Self { name, elements: first - elements.len()..first }
+        };
+        model.mesh.elements.chunk_by(|a, b| a.section == b.section).map(of_section).collect()
+    }
+
+    fn largest(&self, model: &Model, response: &SpeedResponse) -> ComponentResponse {
+        let largest = |values: &mut dyn Iterator<Item = [f64; 2]>| {
+            values.reduce(|most, next| if next[0] > most[0] { next } else { most }).unwrap_or([0.0; 2])
+        };
+        let of_nodes = |value: fn(&NodeResponse) -> f64| {
+            let nodes = self.elements.start..=self.elements.end;
+            largest(
+                &mut nodes.map(|node| [value(&response.nodes[node]), model.mesh.nodes[node].measured_depth]),
+            )
+        };
+        let of_elements = |value: fn(&ElementResponse) -> f64| {
+            largest(&mut self.elements.clone().map(|e| {
+                let element = &model.mesh.elements[e];
+                [value(&response.elements[e]), element.top + 0.5 * element.length]
+            }))
+        };
+        ComponentResponse {
+            component: self.name.clone(),
+            rotation_speed_rpm: response.rotation_speed_rpm,
+            frequency_hz: response.frequency_hz,
+            is_critical: false,
+            displacement: of_nodes(|node| node.displacement),
+            acceleration: of_nodes(|node| node.acceleration)[0],
+            side_force: of_nodes(|node| node.side_force),
+            bending_moment: of_elements(|element| element.bending_moment)[0],
+            bending_stress: of_elements(|element| element.bending_stress),
         }
     }
-    found
 }
 
 impl Excitation {
@@ -346,7 +369,7 @@ mod tests {
     fn response(scenario: &Scenario, excitation: &Excitation, speeds: &[f64]) -> Vec<SpeedResponse> {
         let model = Model::new(scenario).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
-        forced_response(&model, &equilibrium, excitation, speeds).unwrap()
+        forced_response(&model, &equilibrium, excitation, speeds).unwrap().collect::<Result<_, _>>().unwrap()
     }
 
     #[test]
@@ -431,8 +454,8 @@ mod tests {
         let speeds: Vec<f64> = (0..80).map(|i| 120.0 + 2.0 * f64::from(i)).collect();
         let model = Model::new(&scenario).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
-        let responses = forced_response(&model, &equilibrium, &Excitation::Unbalance, &speeds).unwrap();
-        let found = by_component(&model, &responses);
+        let responses = response(&scenario, &Excitation::Unbalance, &speeds);
+        let found = component_responses(&model, &equilibrium, &Excitation::Unbalance, &speeds).unwrap();
         assert_eq!(found.len(), 2 * speeds.len());
         assert_eq!((found[0].component.as_str(), found[80].component.as_str()), ("collar 1", "tool"));
         for (row, response) in found[80..].iter().zip(&responses) {
@@ -453,7 +476,7 @@ mod tests {
         let model = Model::new(&cantilever()).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
         let of = |excitation: &Excitation, speeds: &[f64]| {
-            forced_response(&model, &equilibrium, excitation, speeds).unwrap_err()
+            component_responses(&model, &equilibrium, excitation, speeds).unwrap_err()
         };
         assert_eq!(of(&Excitation::Unbalance, &[60.0, 0.0]), ForcedError::Speed(0.0));
         assert!(matches!(of(&Excitation::Unbalance, &[f64::NAN]), ForcedError::Speed(_)));

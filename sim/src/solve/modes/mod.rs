@@ -20,7 +20,7 @@ mod walk;
 
 pub use forced::{
     ComponentResponse, ElementResponse, Excitation, ForcedError, MOST_SPEEDS, NodeResponse, SpeedResponse,
-    by_component, forced_response,
+    component_responses, forced_response,
 };
 pub use mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, Modes, ModesError};
 pub use pencil::Pencil;

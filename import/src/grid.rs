@@ -235,8 +235,10 @@ fn delimiter(text: &str) -> Option<u8> {
     let divided = |delimiter: char, least: usize| {
         lines().filter(|line| line.matches(delimiter).count() >= least).count()
     };
-    // A semicolon or tab is never part of a number; a comma may be its decimal sign.
-    let counts = [('\t', divided('\t', 1)), (';', divided(';', 1)), (',', divided(',', 2))];
+    // A semicolon or tab is never part of a number; a comma may be its decimal sign, but not in headings. Of equal numbers the last counts.
+    let headings = lines().find(|line| line.contains(char::is_alphabetic));
+    let least = if headings.is_some_and(|line| line.contains(',')) { 1 } else { 2 };
+    let counts = [(',', divided(',', least)), ('\t', divided('\t', 1)), (';', divided(';', 1))];
     let (delimiter, most) = counts.into_iter().max_by_key(|(_, count)| *count)?;
     (2 * most > lines().count()).then_some(delimiter as u8)
 }

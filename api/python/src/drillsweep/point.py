@@ -357,7 +357,7 @@ class Point(Reported):
             friction: Friction factors of the whole hole; the dynamic friction of each hole section unless given.
             travelling_weight: Weight of top drive and travelling block [N].
             axial_speed: Axial speed of the mode `ream` [m/s], downhole positive.
-            stiff: Takes the equilibria of the finite elements in place of the soft string: some 0.1 s a case, 60 at most.
+            stiff: Takes the equilibria of the finite elements in place of the soft string: 0.1 s a case, 60 at most.
             units: Units of the columns: `"si"`, `"field"`, or `"field,hook_load:kN"`; None means the kept units.
         """
         in_metres = None if depths is None else [in_query("depth", depth) for depth in depths]
@@ -380,14 +380,15 @@ class Point(Reported):
         per_revolution: float | None = None,
         units: str | None = None,
     ) -> Table:
-        """Forced response by component over the speed of rotation, linear about the equilibrium: a row a component and speed.
+        """Linear forced response over the speed of rotation: a row for each component and speed.
 
-        Columns: `component`, `rotation_speed_rpm`, `excitation_frequency`, `forced_displacement`, `forced_acceleration`,
-        `forced_side_force`, `forced_bending_moment`, `forced_bending_stress`, and depths. Peaks are critical speeds.
+        Columns: `component`, `rotation_speed_rpm`, `excitation_frequency`, `forced_displacement`,
+        `forced_acceleration`, `forced_side_force`, `forced_bending_moment`, `forced_bending_stress`, and depths.
+        Peaks are critical speeds.
 
         Args:
             speeds: Speeds of rotation [rpm]; 40 to 240 in steps of 1 unless given.
-            depth: Measured depth [m] of a lateral force that turns with the string; None means the scenario's unbalance.
+            depth: Measured depth [m] of a lateral force that turns with the string; None means the unbalance.
             force: Its amplitude [N]; 1000 unless given.
             per_revolution: Its cycles in a revolution, such as the number of blades; 1 unless given.
             units: Units of the columns, as in `torque_drag`.
@@ -406,11 +407,11 @@ class Point(Reported):
         hook_load_deviation: float = 1e4,
         torque_deviation: float = 1e3,
     ) -> dict[str, Any]:
-        """Friction factors of the hole sections that fit measured hook loads and torques, with standard errors and residuals.
+        """Friction factors of hole sections that fit measured hook loads and torques, with residuals.
 
         Args:
-            points: Measured points, each with `bit_depth` [m], `mode` (as in `torque_drag`), and `hook_load` [N], `torque`
-                [N m] or both.
+            points: Measured points, each with `bit_depth` [m], `mode` (as in `torque_drag`), and `hook_load` [N],
+                `torque` [N m] or both.
             travelling_weight: Weight of top drive and travelling block [N], part of the hook loads.
             axial_speed: Axial speed of points of the mode `ream` [m/s], downhole positive.
             hook_load_deviation: Standard deviation of a measured hook load [N].

@@ -264,8 +264,8 @@ fn at_speed(
     excitation: &Excitation,
     node: usize,
 ) -> Result<SpeedResponse, ForcedError> {
-    let rotation_hz = model.rotation_speed / (2.0 * PI);
-    let rotation_speed_rpm = 60.0 * rotation_hz;
+    let rotation_speed_rpm = model.scenario.operation.rotation_speed_rpm;
+    let rotation_hz = rotation_speed_rpm / 60.0;
     let resonance = || ForcedError::Resonance { rotation_speed_rpm };
     let pencil = Pencil::about(model, equilibrium);
     let (frequency_hz, response) = match *excitation {

@@ -1,4 +1,5 @@
 //! Searches for the equilibrium: time per node and iterations of strings of a real well, with and without tool joints, and scenarios drawn at random.
+//! Random scenarios without a known equilibrium are listed.
 //! Run: `cargo bench -p drillsweep-sim --bench equilibrium [-- COUNT]`, with COUNT random scenarios for each law of contact (300)
 
 #![allow(clippy::print_stdout, reason = "a report for the console")]
@@ -64,12 +65,13 @@ fn show_random(law: WallLaw, count: u64) {
     for index in 0..count {
         let mut scenario = random_scenario(1, index);
         scenario.contact.law = law;
-        let (outcome, time) = timed(&Model::new(&scenario).expect("valid"));
+        let model = Model::new(&scenario).expect("valid");
+        let (outcome, time) = timed(&model);
         total += time;
         match outcome {
             Ok(_) => found += 1,
             Err(StaticsError::NotConverged { overload: Some(_), .. }) => unstable += 1,
-            Err(_) => {}
+            Err(error) => println!("  {index}, {} nodes: {error}", model.node_count()),
         }
     }
     let open = count - found - unstable;

@@ -133,23 +133,15 @@ impl ContactParameters<f64> {
     /// Friction coefficients about the axis and along it of a node at rest on a string that moves as a body: mu along the direction of the surface's
     /// velocity (Omega R_e, V), with mu_s at break-away (36), or mu at the sliding speed (14). Without motion friction has no sense, and is zero.
     pub fn friction_at_rest(&self, node: &ContactNode<f64>, motion: BodyMotion) -> FrictionAtRest {
-        let BodyMotion { rotation_speed, axial_speed } = motion;
         let friction = self.friction_of(node);
-        let surface_speed = rotation_speed * node.contact_radius;
-        if axial_speed == 0.0 {
-            let about = match self.at_rest {
-                StartFriction::BreakAway if rotation_speed == 0.0 => 0.0,
-                StartFriction::BreakAway => rotation_speed.signum() * friction.at_break_away,
-                StartFriction::Sliding => friction.coefficient(surface_speed),
-            };
-            return FrictionAtRest { about, along: 0.0 };
-        }
-        let speed = surface_speed.hypot(axial_speed);
-        let friction = match self.at_rest {
+        let [about, along] = motion.direction(node.contact_radius);
+        let coefficient = match self.at_rest {
             StartFriction::BreakAway => friction.at_break_away,
-            StartFriction::Sliding => friction.coefficient(speed),
+            StartFriction::Sliding => {
+                friction.coefficient((motion.rotation_speed * node.contact_radius).hypot(motion.axial_speed))
+            }
         };
-        FrictionAtRest { about: friction * (surface_speed / speed), along: friction * (axial_speed / speed) }
+        FrictionAtRest { about: about * coefficient, along: along * coefficient }
     }
 
     /// Friction of a contact node in each lane; absent if all have that of the law.

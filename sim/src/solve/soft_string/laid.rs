@@ -1,8 +1,8 @@
 //! Integration of tension and torque along a string in its hole.
 
 use super::error::SoftStringError;
-use super::mode::Motion;
 use super::string::{Part, SoftString};
+use crate::force::contact::BodyMotion;
 
 /// Largest turn of the hole in one step \[rad\]: RK4 then leaves less than 1e-11 of the tension a step, whatever the friction.
 const LARGEST_TURN: f64 = 0.02;
@@ -106,13 +106,15 @@ impl<'a> LaidString<'a> {
     pub(super) fn forces(
         &self,
         friction: &[f64],
-        motion: &Motion,
+        motion: &BodyMotion,
         [mut tension, mut torque]: [f64; 2],
         mut visit: impl FnMut(&Step<'a>, &Ends),
     ) -> TopForces {
         let mut total = 0.0;
         for step in &self.steps {
-            let [along, about] = motion.shares(step.part.contact_radius);
+            // Friction along the string, uphole positive, pulls on the pipe above.
+            let [about, along] = motion.direction(step.part.contact_radius);
+            let along = -along;
             let (friction, length) = (friction[step.hole], step.depths[1] - step.depths[0]);
             let drag = friction * along;
             // Rise of the tension, and side force.

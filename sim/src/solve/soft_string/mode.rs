@@ -6,6 +6,7 @@ use drillsweep_scenario::Operation;
 use serde::{Deserialize, Serialize};
 
 use super::error::SoftStringError;
+use crate::force::contact::BodyMotion;
 
 /// Motion of a string and loads on its bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
@@ -34,15 +35,6 @@ pub struct DragSettings {
     pub axial_speed: Option<f64>,
 }
 
-/// Velocity of a string as a body.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Motion {
-    /// Axial speed \[m/s\], downhole positive.
-    pub(crate) axial_speed: f64,
-    /// Speed of rotation, without its sense \[rad/s\].
-    pub(crate) rotation_speed: f64,
-}
-
 impl DragMode {
     /// All modes.
     pub const ALL: [Self; 6] =
@@ -65,12 +57,12 @@ impl DragMode {
         }
     }
 
-    /// Velocity of the string as a body.
+    /// Velocity of the string as a body, its rotation without its sense.
     pub(crate) fn motion(
         self,
         operation: &Operation,
         settings: &DragSettings,
-    ) -> Result<Motion, SoftStringError> {
+    ) -> Result<BodyMotion, SoftStringError> {
         // Of a motion along one direction only the sense counts.
         let [axial_speed, rotation_speed] = match self {
             Self::PickUp => [-1.0, 0.0],
@@ -82,7 +74,7 @@ impl DragMode {
                 [speed.ok_or(SoftStringError::NoAxialSpeed)?, rotation_speed]
             }
         };
-        Ok(Motion { axial_speed, rotation_speed })
+        Ok(BodyMotion { rotation_speed, axial_speed })
     }
 
     /// Tension \[N\] and torque \[N m\] at the bit.
@@ -91,15 +83,5 @@ impl DragMode {
             Self::Drill | Self::Slide => [operation.weight_on_bit, operation.torque_on_bit.abs()],
             Self::PickUp | Self::SlackOff | Self::Rotate | Self::Ream => [0.0; 2],
         }
-    }
-}
-
-impl Motion {
-    /// Shares of friction along the string, uphole positive, that pull on what is above, and about its axis, at a radius \[m\]: opposite to the
-    /// velocity of the surface.
-    pub(super) fn shares(&self, radius: f64) -> [f64; 2] {
-        let surface_speed = self.rotation_speed * radius;
-        let speed = self.axial_speed.hypot(surface_speed);
-        if speed > 0.0 { [-self.axial_speed / speed, surface_speed / speed] } else { [0.0; 2] }
     }
 }

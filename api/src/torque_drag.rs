@@ -3,15 +3,19 @@
 use drillsweep_quantity::columns::*;
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::soft_string::{
-    AtDepth, BroomstickRow, FitError, FitSettings, Margins, SoftString,
+    AtDepth, BroomstickRow, DragCase, FitError, FitSettings, Margins, SoftString,
 };
-use drillsweep_sim::solve::stiff_string::{StiffStringError, stiff_broomstick};
+use drillsweep_sim::solve::stiff_string::stiff_row;
 use drillsweep_table::{Column, Table};
 use serde::{Deserialize, Serialize};
 
+use crate::expand::Interruption;
 use crate::problem::{FieldProblem, ProblemDetails, ProblemKind};
 
 pub use drillsweep_sim::solve::soft_string::{DragMode, DragSettings, FrictionFit, MeasuredPoint};
+
+/// Largest number of cases of one stiff broomstick: modes times friction factors times depths.
+const MOST_STIFF_CASES: usize = 60;
 
 /// Largest number of measured points of one fit.
 const MOST_MEASURED_POINTS: usize = 500;
@@ -35,12 +39,17 @@ pub struct Broomstick {
 }
 
 impl Broomstick {
-    /// Forces of every case.
+    /// Forces of every case. Each case of the stiff string begins with a call of `interruption`.
     ///
     /// # Errors
-    /// The scenario has no string in a well, a bit depth is not on the string, there are too many cases, or a stiff string has no equilibrium.
-    pub fn rows(&self, scenario: &Scenario) -> Result<Vec<BroomstickRow>, StiffStringError> {
-        let string = SoftString::new(scenario)?;
+    /// The scenario has no string in a well, a bit depth is not on the string, there are too many cases, a stiff string has no equilibrium, or the work was
+    /// interrupted; as a problem of the parameter.
+    pub fn rows(
+        &self,
+        scenario: &Scenario,
+        interruption: Interruption<'_>,
+    ) -> Result<Vec<BroomstickRow>, Box<ProblemDetails>> {
+        let string = SoftString::new(scenario).map_err(|error| refused(&error))?;
         let usual = |i: u32| string.bit_depth() * f64::from(i) / f64::from(USUAL_DEPTHS);
         let depths = match &self.depths[..] {
             [] if self.is_stiff => vec![string.bit_depth()],
@@ -51,22 +60,42 @@ impl Broomstick {
             [] => vec![None],
             friction => friction.iter().copied().map(Some).collect(),
         };
-        if self.is_stiff {
-            return stiff_broomstick(scenario, &self.modes, &friction, &depths, &self.settings);
+        // The soft string, which takes microseconds, checks all cases.
+        let soft = string
+            .broomstick(&self.modes, &friction, &depths, &self.settings)
+            .map_err(|error| refused(&error))?;
+        if !self.is_stiff {
+            return Ok(soft);
         }
-        Ok(string.broomstick(&self.modes, &friction, &depths, &self.settings)?)
+        if soft.len() > MOST_STIFF_CASES {
+            let requested = soft.len();
+            return Err(refused(&format!(
+                "{requested} cases of the stiff string are requested, of {MOST_STIFF_CASES} at most"
+            )));
+        }
+        let stiff = |row: &BroomstickRow| {
+            interruption()?;
+            let case = DragCase { mode: row.mode, bit_depth: row.bit_depth, friction: row.friction };
+            stiff_row(scenario, &case, &self.settings).map_err(|error| refused(&error))
+        };
+        soft.iter().map(stiff).collect()
     }
 
     /// Forces of every case as a table.
     ///
     /// # Errors
-    /// As [`Broomstick::rows`], as a problem of the parameter.
-    pub fn table(&self, scenario: &Scenario) -> Result<Table, Box<ProblemDetails>> {
-        let rows = self.rows(scenario);
-        Ok(table(
-            &rows.map_err(|error| ProblemDetails::new(ProblemKind::InvalidParameter, error.to_string()))?,
-        ))
+    /// As [`Broomstick::rows`].
+    pub fn table(
+        &self,
+        scenario: &Scenario,
+        interruption: Interruption<'_>,
+    ) -> Result<Table, Box<ProblemDetails>> {
+        Ok(table(&self.rows(scenario, interruption)?))
     }
+}
+
+fn refused(error: &impl ToString) -> Box<ProblemDetails> {
+    Box::new(ProblemDetails::new(ProblemKind::InvalidParameter, error.to_string()))
 }
 
 /// A broomstick as a table, one row a case.
@@ -164,6 +193,7 @@ mod tests {
     use drillsweep_scenario::preset;
 
     use super::*;
+    use crate::expand::UNINTERRUPTED;
 
     #[test]
     fn a_broomstick_ends_at_the_string_and_has_a_row_a_case() {
@@ -172,7 +202,7 @@ mod tests {
         let settings = DragSettings::default();
         let mut broomstick =
             Broomstick { modes, depths: Vec::new(), friction: Vec::new(), settings, is_stiff: false };
-        let table = broomstick.table(&scenario).unwrap();
+        let table = broomstick.table(&scenario, UNINTERRUPTED).unwrap();
         assert_eq!(table.rows(), 80);
         let column = |table: &Table, name: &str| table.columns[name].numbers().unwrap();
         let depths = column(&table, "bit_depth");
@@ -181,13 +211,17 @@ mod tests {
         // Off bottom, rotating; the stiff string of this scenario has 12.00 kN in flowing mud, whose drag lifts it.
         let last = *column(&table, "hook_load").last().unwrap();
         assert!((12.00e3..12.5e3).contains(&last), "{last}");
-        let stiff = Broomstick { is_stiff: true, ..broomstick.clone() }.table(&scenario).unwrap();
+        let stiff =
+            Broomstick { is_stiff: true, ..broomstick.clone() }.table(&scenario, UNINTERRUPTED).unwrap();
         // In flowing mud, with the dynamic friction of the scenario as the soft string.
         assert_eq!(column(&stiff, "bit_depth"), [200.0, 200.0]);
         let (up, soft) = (column(&stiff, "hook_load"), column(&table, "hook_load"));
         assert!((up[1] / 12.00e3 - 1.0).abs() < 1e-2 && up[0] > up[1] && up[0] < soft[39], "{up:?}");
+        let many = Broomstick { is_stiff: true, friction: vec![0.2; 31], ..broomstick.clone() };
+        let problem = many.table(&scenario, UNINTERRUPTED).unwrap_err();
+        assert!(problem.detail.contains("62 cases"), "{problem:?}");
         broomstick.depths = vec![201.0];
-        let problem = broomstick.table(&scenario).unwrap_err();
+        let problem = broomstick.table(&scenario, UNINTERRUPTED).unwrap_err();
         assert!(problem.detail.contains("201 m"), "{problem:?}");
     }
 
@@ -202,7 +236,7 @@ mod tests {
             is_stiff: false,
         };
         let point = |row: &BroomstickRow| serde_json::json!({ "bit_depth": row.bit_depth, "mode": row.mode.name(), "hook_load": row.hook_load });
-        let points: Vec<_> = broomstick.rows(&scenario).unwrap().iter().map(point).collect();
+        let points: Vec<_> = broomstick.rows(&scenario, UNINTERRUPTED).unwrap().iter().map(point).collect();
         let request = |points: &[serde_json::Value]| -> FrictionRequest {
             serde_json::from_value(serde_json::json!({ "points": points, "travelling_weight": 2e5 })).unwrap()
         };

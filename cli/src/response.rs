@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use clap::Args;
+use drillsweep_api::expand::UNINTERRUPTED;
 use drillsweep_api::forced::{Excitation, ForcedRequest, table};
 use drillsweep_quantity::{UnitSystem, units};
 use drillsweep_sim::solve::modes::ComponentResponse;
@@ -54,7 +55,7 @@ pub(crate) fn show(arguments: &ResponseArguments) -> anyhow::Result<()> {
         },
     };
     let speeds = arguments.speeds.as_ref().map_or(Vec::new(), |speeds| speeds.0.clone());
-    let rows = ForcedRequest { speeds, excitation }.rows(&scenario)?;
+    let rows = ForcedRequest { speeds, excitation }.rows(&scenario, UNINTERRUPTED)?;
     match (arguments.json, arguments.csv) {
         (true, _) => print(&serde_json::to_string_pretty(&rows)?),
         (_, true) => print(csv::write(&table(&rows))?.trim_end()),

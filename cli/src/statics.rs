@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use anyhow::{Context as _, bail};
 use clap::Args;
+use drillsweep_api::expand::UNINTERRUPTED;
 use drillsweep_api::torque_drag::{Broomstick, table};
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::{
@@ -17,6 +18,9 @@ use crate::print;
 use crate::scenario::ScenarioArguments;
 use crate::submit::parse_axis;
 use crate::text::{Alignment, Shown, columns};
+
+/// Largest number of values of a list.
+const MOST_VALUES: usize = 5_000;
 
 /// Compression over the buckling load from which it is shown.
 const SHOWN: f64 = 0.005;
@@ -62,6 +66,9 @@ pub(crate) struct List(pub(crate) Vec<f64>);
 pub(crate) fn list(quantity: &str, text: &str) -> anyhow::Result<List> {
     let axis = parse_axis(quantity, text)?;
     let Some(count) = axis.count() else { bail!("write a list or a range from:to:count, got {text:?}") };
+    if count > MOST_VALUES {
+        bail!("{count} values are requested, of {MOST_VALUES} at most");
+    }
     Ok(List((0..count).map(|i| axis.value(i)).collect()))
 }
 
@@ -85,7 +92,7 @@ pub(crate) fn show(arguments: &StaticsArguments) -> anyhow::Result<()> {
         },
         is_stiff: arguments.stiff,
     };
-    let rows = broomstick.rows(&scenario)?;
+    let rows = broomstick.rows(&scenario, UNINTERRUPTED)?;
     let units = arguments.units.clone().unwrap_or_default();
     match (arguments.json, arguments.csv) {
         (true, _) => print(&serde_json::to_string_pretty(&rows)?),
@@ -224,7 +231,7 @@ mod tests {
             settings: DragSettings { travelling_weight: 2e5, axial_speed: None },
             is_stiff: false,
         };
-        let rows = broomstick.rows(&scenario).unwrap();
+        let rows = broomstick.rows(&scenario, UNINTERRUPTED).unwrap();
         let text = |units: &str| {
             text("paper-200m", "a soft string in still mud", &rows, &UnitChoice::parse(units).unwrap())
                 .unwrap()
@@ -243,7 +250,7 @@ mod tests {
             settings,
             is_stiff: false,
         };
-        let rows = broomstick.rows(&preset("paper-200m").unwrap()).unwrap();
+        let rows = broomstick.rows(&preset("paper-200m").unwrap(), UNINTERRUPTED).unwrap();
         let line = |units: &str, line: usize| {
             let text = csv_text(&rows, &UnitChoice::parse(units).unwrap()).unwrap();
             text.lines().nth(line).unwrap().split(',').take(4).collect::<Vec<_>>().join(",")

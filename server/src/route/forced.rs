@@ -1,5 +1,7 @@
 //! Forced response of a point's string over the speed of rotation.
 
+use std::time::Duration;
+
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -93,6 +95,8 @@ pub(crate) async fn show(
 ) -> Result<Response> {
     /// Bytes of a row, in memory and in writing.
     const OF_ROW: u64 = 512;
+    /// Processor time of all speeds, as of 500 on a whole well at some 50 ms each.
+    const OF_SPEEDS: Duration = Duration::from_secs(25);
     let form = Form::choose(query.format, query.units.clone(), &headers)?;
     let request = query.request()?;
     let point = point(&app, &id, n).await?;
@@ -101,8 +105,12 @@ pub(crate) async fn show(
         return Ok(unchanged);
     }
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let (table, _memory): (Table, _) =
-        place.run(move |_: &mut Work| Ok(request.table(&point.scenario)?)).await?;
+    let (table, _memory): (Table, _) = place
+        .run(move |work: &mut Work| {
+            work.allow(OF_SPEEDS);
+            Ok(request.table(&point.scenario, &|| work.check())?)
+        })
+        .await?;
     let place = app.view(form.format.memory(OF_ROW * table.rows() as u64)).await?;
     place
         .answer(move || {

@@ -1,5 +1,7 @@
 //! Torque and drag of a point's string over bit depth, and friction factors from measurements.
 
+use std::time::Duration;
+
 use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -98,6 +100,8 @@ pub(crate) async fn show(
 ) -> Result<Response> {
     /// Bytes of a case, in memory and in writing.
     const OF_CASE: u64 = 512;
+    /// Processor time of all cases of a stiff string, as of 60 searches of a whole well's equilibrium at half a second each.
+    const OF_STIFF_CASES: Duration = Duration::from_secs(30);
     let form = Form::choose(query.format, query.units.clone(), &headers)?;
     let point = point(&app, &id, n).await?;
     let tag = Tag::of(&form, &("torque_drag", &point.key, &query));
@@ -108,8 +112,14 @@ pub(crate) async fn show(
     let settings = DragSettings { travelling_weight: travelling_weight.unwrap_or(0.0), axial_speed };
     let broom = Broomstick { modes, depths, friction, settings, is_stiff: stiff };
     let place = app.expansions.enter(caller.budget(), MEMORY_OF_EQUILIBRIUM).await?;
-    let (table, _memory): (Table, _) =
-        place.run(move |_: &mut Work| Ok(broom.table(&point.scenario)?)).await?;
+    let (table, _memory): (Table, _) = place
+        .run(move |work: &mut Work| {
+            if broom.is_stiff {
+                work.allow(OF_STIFF_CASES);
+            }
+            Ok(broom.table(&point.scenario, &|| work.check())?)
+        })
+        .await?;
     let place = app.view(form.format.memory(OF_CASE * table.rows() as u64)).await?;
     place
         .answer(move || {

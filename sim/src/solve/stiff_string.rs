@@ -6,13 +6,10 @@ use drillsweep_scenario::{Effect, Scenario, StartFriction, Switch};
 
 use super::model::{Model, ModelError};
 use super::soft_string::{
-    BroomstickRow, Carried, DragCase, DragMode, DragSettings, Margins, SoftString, SoftStringError, Strength,
+    BroomstickRow, Carried, DragCase, DragMode, DragSettings, Margins, SoftStringError, Strength,
 };
 use super::statics::{Equilibrium, StaticsError};
 use crate::math::dof::{DOFS, W};
-
-/// Largest number of cases of one request: modes times friction factors times depths.
-pub const MOST_STIFF_CASES: usize = 60;
 
 /// Friction of a hole without friction if a section of it has some.
 const LEAST_FRICTION: f64 = 1e-12;
@@ -41,40 +38,6 @@ pub enum StiffStringError {
         /// Error of the search.
         error: StaticsError,
     },
-    /// Too many cases are requested.
-    #[error("{0} cases of the stiff string are requested, of {MOST_STIFF_CASES} at most")]
-    TooManyCases(usize),
-}
-
-/// Forces of every mode with every friction factor at every bit depth, in this order of nesting.
-///
-/// # Errors
-/// There are too many cases, a case is not valid, or a string has no model or no equilibrium.
-pub fn stiff_broomstick(
-    scenario: &Scenario,
-    modes: &[DragMode],
-    friction: &[Option<f64>],
-    depths: &[f64],
-    settings: &DragSettings,
-) -> Result<Vec<BroomstickRow>, StiffStringError> {
-    let cases = modes.len().saturating_mul(friction.len()).saturating_mul(depths.len());
-    if cases > MOST_STIFF_CASES {
-        return Err(StiffStringError::TooManyCases(cases));
-    }
-    // Bit depths are checked before any work is done.
-    let soft = SoftString::new(scenario)?;
-    for &bit_depth in depths {
-        soft.forces(&DragCase { mode: DragMode::Rotate, bit_depth, friction: None }, settings)?;
-    }
-    let mut rows = Vec::with_capacity(cases);
-    for &mode in modes {
-        for &friction in friction {
-            for &bit_depth in depths {
-                rows.push(stiff_row(scenario, &DragCase { mode, bit_depth, friction }, settings)?);
-            }
-        }
-    }
-    Ok(rows)
 }
 
 /// Forces at the surface and margins in one case.

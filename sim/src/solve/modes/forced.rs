@@ -129,21 +129,18 @@ pub enum ForcedError {
     },
 }
 
-/// Largest responses of each component from the top, at every speed of rotation \[rpm\] in turn, to an excitation of a model about one equilibrium:
-/// contacts that are closed there stay closed. The flow past the string is that of each speed.
+/// Largest responses of each component from the top, at every speed of `responses` in turn, which increase. A response of all nodes is kept for one
+/// speed only.
 ///
 /// # Errors
-/// A speed, the place or the size of the force is out of range, or the string has an undamped resonance.
-pub fn component_responses(
+/// The first error among the responses.
+pub fn component_responses<E>(
     model: &Model,
-    equilibrium: &Equilibrium,
-    excitation: &Excitation,
-    speeds_rpm: &[f64],
-) -> Result<Vec<ComponentResponse>, ForcedError> {
+    responses: impl Iterator<Item = Result<SpeedResponse, E>>,
+) -> Result<Vec<ComponentResponse>, E> {
     let components = Component::of(model);
-    let mut by_component = vec![Vec::with_capacity(speeds_rpm.len()); components.len()];
-    // A response of all nodes is kept for one speed only.
-    for response in forced_response(model, equilibrium, excitation, speeds_rpm)? {
+    let mut by_component = vec![Vec::new(); components.len()];
+    for response in responses {
         let response = response?;
         for (component, rows) in components.iter().zip(&mut by_component) {
             rows.push(component.largest(model, &response));
@@ -158,10 +155,11 @@ pub fn component_responses(
     Ok(by_component.into_iter().flatten().collect())
 }
 
-/// Responses of all nodes and elements at one speed after the other.
+/// Response of all nodes and elements of a model to an excitation at one speed of rotation \[rpm\] after the other, about one equilibrium: contacts that are
+/// closed there stay closed. The flow past the string is that of each speed.
 ///
 /// # Errors
-/// As [`component_responses`].
+/// A speed, the place or the size of the force is out of range; at one speed, if the string has an undamped resonance or the flow has no solution.
 pub fn forced_response<'a>(
     model: &'a Model,
     equilibrium: &'a Equilibrium,
@@ -453,9 +451,8 @@ mod tests {
         scenario.string.sections.insert(0, upper);
         let speeds: Vec<f64> = (0..80).map(|i| 120.0 + 2.0 * f64::from(i)).collect();
         let model = Model::new(&scenario).unwrap();
-        let equilibrium = Equilibrium::find(&model).unwrap();
         let responses = response(&scenario, &Excitation::Unbalance, &speeds);
-        let found = component_responses(&model, &equilibrium, &Excitation::Unbalance, &speeds).unwrap();
+        let found = component_responses(&model, responses.iter().cloned().map(Ok::<_, ForcedError>)).unwrap();
         assert_eq!(found.len(), 2 * speeds.len());
         assert_eq!((found[0].component.as_str(), found[80].component.as_str()), ("collar 1", "tool"));
         for (row, response) in found[80..].iter().zip(&responses) {
@@ -476,7 +473,7 @@ mod tests {
         let model = Model::new(&cantilever()).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
         let of = |excitation: &Excitation, speeds: &[f64]| {
-            component_responses(&model, &equilibrium, excitation, speeds).unwrap_err()
+            forced_response(&model, &equilibrium, excitation, speeds).map(|_| ()).unwrap_err()
         };
         assert_eq!(of(&Excitation::Unbalance, &[60.0, 0.0]), ForcedError::Speed(0.0));
         assert!(matches!(of(&Excitation::Unbalance, &[f64::NAN]), ForcedError::Speed(_)));

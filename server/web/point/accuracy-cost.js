@@ -22,9 +22,10 @@ export class AccuracyCost {
     "section",
     { class: "panel", "aria-label": "What accuracy costs" },
     h("h2", {}, "What accuracy costs"),
+    // Above what grows with late answers, so that it stays where it is clicked.
+    this.#study,
     h("figure", {}, this.#picture, this.#caption),
     this.#words,
-    this.#study,
   );
 
   /** Cost study in place of the point's run, requested once. @type {Promise<any> | undefined} */

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
-from browsing import MINUS, Opens, drawn, trace
+from browsing import MINUS, Opens, drawn, trace, until
 from drillsweep import Client, Sweep
 from service import SHORT
 
@@ -77,3 +77,20 @@ def test_a_point_leads_to_the_cost_study_of_its_scenario(opened: Opens, client: 
     page = opened(f"#/sweeps/{sweep.id}/points/1?view=about")
     page.get_by_role("link", name="Cost study of this scenario").click()
     page.wait_for_url(f"**/sweeps/{answer.id}/points/1*")
+
+
+def test_a_link_that_late_answers_draw_again_under_the_mouse_is_followed(opened: Opens, client: Client) -> None:
+    sweep = client.submit("paper-200m", set=SHORT, axes={"flow_rate": [0.014]}).wait(timeout=120.0)
+    page = opened("#/sweeps")
+    held: list[Route] = []
+    page.route("**/points/1/plan", lambda route: held.append(route))
+    page.goto(f"{page.url.partition('#')[0]}#/sweeps/{sweep.id}/points/1?view=about")
+    panel = page.get_by_role("region", name="What accuracy costs")
+    link = panel.get_by_role("link", name="Request a cost study of this scenario")
+    link.hover()
+    until(page, lambda: bool(held))
+    page.mouse.down()
+    held[0].continue_()
+    expect(panel).to_contain_text("Dotted: predicted times of this point")
+    page.mouse.up()
+    expect(page.get_by_label("Tags")).to_be_visible()

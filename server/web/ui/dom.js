@@ -36,7 +36,7 @@ export function append(parent, children) {
 
 /** Link or button that the mouse holds down. @type {Element | null} */
 let held = null;
-/** Whether `held` has taken the place of the one that was pressed. */
+/** True if `held` was put into the page after it was pressed, in the place of the pressed one or anew. */
 let isReplaced = false;
 
 addEventListener(
@@ -53,7 +53,7 @@ addEventListener(
     const pressed = isReplaced ? held : null;
     held = null;
     isReplaced = false;
-    // A browser sends no click if the pressed element has left the page.
+    // A browser sends no click if the pressed element has left the page, even if it has come back.
     if (event.target instanceof Node && pressed?.contains(event.target))
       pressed.dispatchEvent(new MouseEvent("click", event));
   },
@@ -75,7 +75,7 @@ export function fill(parent, ...children) {
   const focused = focusedAfter();
   if (focused instanceof HTMLElement) focused.focus({ preventScroll: true });
   const pressed = heldAfter();
-  if (!pressed || pressed === held) return;
+  if (!pressed) return;
   held = pressed;
   isReplaced = true;
 }

@@ -183,7 +183,14 @@ mod tests {
         for speed in [None, Some("of another version")] {
             let planned = DryRun::new(&expansion(), 0, 0, None, speed, 2);
             assert_eq!((planned.cpu_time, planned.wall_time), (None, None));
-            assert!(planned.plan.unwrap().effects.iter().all(|effect| effect.active));
+            let plan = planned.plan.unwrap();
+            let absent: Vec<_> = plan
+                .effects
+                .iter()
+                .filter(|effect| !effect.active)
+                .map(|effect| effect.effect.name())
+                .collect();
+            assert_eq!(absent, ["bit_rock", "excitation", "top_drive"]);
         }
         assert_eq!(DryRun::new(&expansion(), 0, 0, None, Some(&speed.to_string()), 0).wall_time, None);
 

@@ -49,12 +49,12 @@ pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
     if arguments.json {
         print(&serde_json::to_string_pretty(&found)?);
     } else {
-        print(text(&scenario.name, &found, &arguments.units)?.trim_end());
+        print(text(&scenario.name, &found, model.effects.bit_rock, &arguments.units)?.trim_end());
     }
     Ok(())
 }
 
-fn text(name: &str, found: &Modes, units: &UnitChoice) -> anyhow::Result<String> {
+fn text(name: &str, found: &Modes, includes_bit: bool, units: &UnitChoice) -> anyhow::Result<String> {
     let mut text = String::new();
     let name = if name.is_empty() { "the scenario" } else { name };
     let [depth, extent] = [0.01, 0.1].map(|resolution| Shown::new(units, &MEASURED_DEPTH, resolution));
@@ -103,7 +103,9 @@ fn text(name: &str, found: &Modes, units: &UnitChoice) -> anyhow::Result<String>
             found.completeness
         )?;
     }
-    writeln!(text, "{BIT_NOT_JUDGED}")?;
+    if !includes_bit {
+        writeln!(text, "{BIT_NOT_JUDGED}")?;
+    }
     Ok(text)
 }
 
@@ -131,9 +133,9 @@ mod tests {
             completeness: Completeness::Counted,
         };
         let [si, field] = ["si", "field"].map(|units| UnitChoice::parse(units).unwrap());
-        let [counted, in_feet] = [&si, &field].map(|units| text("paper-200m", &found, units).unwrap());
+        let [counted, in_feet] = [&si, &field].map(|units| text("paper-200m", &found, false, units).unwrap());
         found.modes.clear();
         found.completeness = Completeness::Missing(2);
-        insta::assert_snapshot!([counted, in_feet, text("", &found, &si).unwrap()].join("\n"));
+        insta::assert_snapshot!([counted, in_feet, text("", &found, false, &si).unwrap()].join("\n"));
     }
 }

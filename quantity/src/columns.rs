@@ -435,6 +435,12 @@ quantities! {
     WORK_ROTATION: "work_rotation", "", ENERGY, "work of the rotation";
     /// Work of the flows (Coriolis and follower forces) and of the follower torque up to this time.
     WORK_FLOW_AND_TORQUE: "work_flow_and_torque", "", ENERGY, "work of flow and follower torque";
+    /// Work of the torque on bit on the twist of the bit up to this time, without that of the constant torque.
+    WORK_BIT: "work_bit", "", ENERGY, "work of the bit";
+    /// Work of the excitations up to this time.
+    WORK_EXCITATION: "work_excitation", "", ENERGY, "work of the excitations";
+    /// Work of the top drive's damping on the twist of the top up to this time; its spring is part of the stored energy.
+    WORK_DRIVE: "work_drive", "", ENERGY, "work of the top drive";
     /// Energy dissipated by structural damping up to this time.
     DISSIPATED_STRUCTURE: "dissipated_structure", "", ENERGY, "dissipated by the structure";
     /// Energy dissipated by the mud up to this time.

@@ -327,6 +327,10 @@ static FAMILIES: &[Family] = &[
         units: &[unit(&["kg/m"], "1"), quotient(&["lb/ft", "lbm/ft", "ppf"], "0.45359237", "0.3048")],
     },
     Family {
+        dimension: "moment of inertia",
+        units: &[unit(&["kg m2"], "1"), unit(&["lb ft2", "lbm ft2"], "0.0421401100938048")],
+    },
+    Family {
         dimension: "density",
         units: &[
             unit(&["kg/m3"], "1"),

@@ -126,6 +126,38 @@ pub(super) static ALL: &[Quantity] = &[
     field("operation.torque_on_bit", "", Some(&units::TORQUE), "torque on bit"),
     field("operation.axial_speed", "V", Some(&units::SPEED), "axial speed of the string"),
     field("operation.length_above", "L", Some(&units::DEPTH), "length of pipe above"),
+    // Bit and rock.
+    field("bit.aggressiveness", "mu_b", Some(&units::RATIO), "aggressiveness of the bit"),
+    field("bit.static_ratio", "rho_s", Some(&units::RATIO), "static ratio of the torque on bit"),
+    field(
+        "bit.weakening_speed",
+        "omega_w",
+        Some(&units::ANGULAR_SPEED),
+        "weakening speed of the torque on bit",
+    ),
+    field(
+        "bit.regularisation_speed",
+        "c",
+        Some(&units::ANGULAR_SPEED),
+        "regularisation speed of the torque on bit",
+    ),
+    // The top drive.
+    field("top_drive.gain", "", Some(&units::RATIO), "impedance factor of the drive"),
+    field("top_drive.frequency_hz", "f", Some(&units::FREQUENCY), "tuning frequency of the drive"),
+    field("top_drive.inertia", "J", Some(&units::INERTIA), "inertia of the drive"),
+    field("top_drive.inertia_compensation", "J_c", Some(&units::RATIO), "inertia compensation"),
+    field("top_drive.factor", "", Some(&units::RATIO), "impedance factor of Z-torque"),
+    field("top_drive.time_constant", "tau", Some(&units::TIME), "time constant of Z-torque"),
+    // Excitation.
+    field("excitation.measured_depth", "", Some(&units::DEPTH), "depth of an excitation"),
+    field("excitation.above_bit", "", Some(&units::DEPTH), "excitation above the bit"),
+    field("excitation.force", "", Some(&units::FORCE), "exciting force"),
+    field("excitation.torque", "", Some(&units::TORQUE), "exciting torque"),
+    field("excitation.frequency_hz", "f", Some(&units::FREQUENCY), "frequency of an excitation"),
+    field("excitation.per_revolution", "n", Some(&units::RATIO), "cycles of an excitation in a revolution"),
+    field("excitation.phase_deg", "", Some(&units::ANGLE_IN_DEGREES), "phase of an excitation"),
+    field("excitation.band_to_hz", "", Some(&units::FREQUENCY), "end of the band of an excitation"),
+    field("excitation.seed", "", None, "seed of an excitation"),
     // Contact with the wall.
     field("contact.stiffness", "k_c", Some(&units::STIFFNESS), "wall stiffness"),
     field("contact.damping", "c_c", Some(&units::DAMPING), "wall damping"),

@@ -182,6 +182,8 @@ pub static SPEED_OF_ROTATION: Units = units("angular speed", "rpm", ("rpm", 1.0)
 pub static MASS: Units = units("mass", "kg", ("lb", POUND));
 /// Masses of a length of string.
 pub static MASS_PER_LENGTH: Units = units("mass per length", "kg/m", ("lb/ft", POUND / FOOT));
+/// Moments of inertia.
+pub static INERTIA: Units = units("moment of inertia", "kg m2", ("lb ft2", POUND * FOOT * FOOT));
 /// Densities of muds.
 pub static MUD_DENSITY: Units = units("density", "kg/m3", ("ppg", POUND / GALLON));
 /// Densities of solids.
@@ -253,6 +255,7 @@ mod tests {
             (&ACCELERATION, "g", 9.806_65, 15),
             (&MASS, "lb", 0.453_592_37, 15),
             (&MASS_PER_LENGTH, "lb/ft", 1.488_164, 7),
+            (&INERTIA, "lb ft2", 4.214_011e-2, 7),
             (&SPEED, "ft/s", 0.3048, 15),
             (&ANGLE, "deg", 0.017_453_29, 7),
             (&ANGULAR_SPEED, "rpm", 0.104_719_8, 7),

@@ -128,6 +128,12 @@ effects! {
     friction_torque / FrictionTorque,
     /// Mass unbalance; without it friction alone excites lateral vibration.
     unbalance / Unbalance,
+    /// Torque on bit that falls with the speed of the bit, by the scenario's `bit`; without it torque on bit is constant.
+    bit_rock / BitRock,
+    /// Forces of the scenario's `excitation`.
+    excitation / Excitation,
+    /// Top drive that yields to the torque of the string, by the scenario's `top_drive`; without it the speed of the top is imposed.
+    top_drive / TopDrive,
     /// Gyroscopic coupling of the lateral rotations; small at usual speeds of rotation.
     gyroscopic / Gyroscopic,
     /// Stiffening by the effective tension, and softening by compression; without it the string cannot buckle.

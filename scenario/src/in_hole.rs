@@ -36,7 +36,7 @@ impl PlacedSection<'_> {
 
 impl Scenario {
     /// The same scenario written with the string that is in the hole: from the top, without the sections and pieces above it, and with the measured depths of
-    /// gauges and unbalance masses. `bit_depth` remains only if the first piece is partly above.
+    /// gauges, unbalance masses and excitations; with the torque of the bit in place of its aggressiveness. `bit_depth` remains only if the first piece is partly above.
     ///
     /// A bit depth that is not on the string, which validation refuses, leaves the whole string.
     pub fn in_hole(&self) -> Cow<'_, Self> {
@@ -47,10 +47,13 @@ impl Scenario {
             && string.bit_depth.is_none()
             && heights.all(|above| above.is_none())
             && of_masses.all(|above| above.is_none())
+            && self.bit.aggressiveness.is_none()
+            && self.excitation.iter().all(|force| force.above_bit.is_none())
         {
             return Cow::Borrowed(self);
         }
         let mut scenario = self.clone();
+        (scenario.operation.torque_on_bit, scenario.bit.aggressiveness) = (self.torque_on_bit(), None);
         let string = &mut scenario.string;
         if string.order == SectionOrder::FromBit {
             string.sections.reverse();
@@ -63,6 +66,9 @@ impl Scenario {
         }
         for mass in string.unbalance.iter_mut().filter(|mass| mass.above_bit.is_some()) {
             (mass.measured_depth, mass.above_bit) = (Some(mass.depth(bit)), None);
+        }
+        for force in scenario.excitation.iter_mut().filter(|force| force.above_bit.is_some()) {
+            (force.measured_depth, force.above_bit) = (Some(force.depth(bit)), None);
         }
         Cow::Owned(scenario)
     }
@@ -159,7 +165,7 @@ impl UnbalanceMass {
     }
 }
 
-fn depth(measured_depth: Option<f64>, above_bit: Option<f64>, bit: f64) -> f64 {
+pub(crate) fn depth(measured_depth: Option<f64>, above_bit: Option<f64>, bit: f64) -> f64 {
     measured_depth.or(above_bit.map(|above| bit - above)).unwrap_or(f64::NAN)
 }
 

@@ -4,9 +4,11 @@
 //! refused. The types define valid documents; `drillsweep_sim::validation` checks that they can be simulated.
 
 mod accuracy;
+mod bit;
 mod catalogue;
 mod compose;
 mod effects;
+mod excitation;
 mod failure;
 mod format;
 mod hole;
@@ -25,12 +27,15 @@ mod snapshots;
 mod statics;
 mod strict;
 mod study;
+mod top_drive;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
+pub use bit::{Bit, BitLaw};
 pub use catalogue::CATALOGUE;
 pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};
+pub use excitation::{ExcitationDirection, ExcitingForce};
 pub use failure::{FailureClass, PointError};
 pub use hole::{Hole, HoleSection};
 pub use hydraulics::{Hydraulics, PressureLosses};
@@ -46,6 +51,7 @@ pub use snapshots::Snapshots;
 pub use statics::{StartFriction, Starts, Statics};
 pub use strict::read_strictly;
 pub use study::{CostStudy, MethodSteps, StudyReference, USUAL_STEPS};
+pub use top_drive::{TopDrive, TopDriveKind, Tuning};
 pub use window::{OrbitWindow, WindowName};
 
 use serde::{Deserialize, Serialize};
@@ -70,6 +76,15 @@ pub struct Scenario {
     pub hydraulics: Hydraulics,
     /// Rotation and loads.
     pub operation: Operation,
+    /// Interaction of bit and rock; absent means a constant torque on bit.
+    #[serde(default)]
+    pub bit: Bit,
+    /// Top drive; absent means that the speed of the top is imposed.
+    #[serde(default)]
+    pub top_drive: TopDrive,
+    /// Forces that shake the string, at most 64, in addition to unbalance and friction; none unless given.
+    #[serde(default)]
+    pub excitation: Vec<ExcitingForce>,
     /// Borehole contact and friction.
     pub contact: ContactLaw,
     /// The equilibrium that the run starts from; absent means that with static friction.
@@ -371,8 +386,8 @@ pub struct Operation {
     /// search for the equilibrium may fail. A pull raises lateral frequencies and draws the string to the inside of bends.
     pub weight_on_bit: f64,
     /// Torque on bit \[N m\], of the sign opposite to the rotation's (either if nothing turns): negative opposes clockwise
-    /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; it is constant, so that
-    /// stick-slip comes from the wall alone.
+    /// rotation; usual -2e4 to -1e3, 0 off bottom, more than 1e5 either way, beyond top drives, is warned of. It winds the string up and lowers its buckling load; with the law of `bit` it is the torque at this
+    /// speed of rotation.
     pub torque_on_bit: f64,
     /// Axial speed of the whole string \[m/s\], downhole positive, negative pulls out; 0 unless given, at most 10 either way, usual 0.1 to 1 of a
     /// trip and 0.003 of drilling without rotation. Friction at rest then acts against the velocity of the surface, about the axis and along it: the

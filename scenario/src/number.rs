@@ -5,10 +5,10 @@
 
 use crate::set::{Step, parse};
 use crate::{
-    Accuracy, AccuracyTarget, ContactLaw, CostStudy, DrillString, ElementLengths, Gauge, HoleSection,
-    Hydraulics, Material, Mesh, MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs, OrbitWindow, Outputs,
-    RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots, StudyReference, SurveyStation,
-    TimeStepping, TimeWindow, ToolJoint, UnbalanceMass, Well,
+    Accuracy, AccuracyTarget, Bit, ContactLaw, CostStudy, DrillString, ElementLengths, ExcitingForce, Gauge,
+    HoleSection, Hydraulics, Material, Mesh, MethodSteps, Mud, NodeChoice, Operation, OrbitOutputs,
+    OrbitWindow, Outputs, RayleighDamping, Recording, ScaledMesh, Scenario, Section, Snapshots,
+    StudyReference, SurveyStation, TimeStepping, TimeWindow, ToolJoint, TopDrive, UnbalanceMass, Well,
 };
 
 impl Scenario {
@@ -114,7 +114,8 @@ macro_rules! numbers {
     };
 }
 
-numbers!(Scenario: well, string, mud, hydraulics, operation, contact, damping, mesh, duration, recording, accuracy, cost_study;
+numbers!(Scenario: well, string, mud, hydraulics, operation, bit, top_drive, excitation, contact, damping,
+    mesh, duration, recording, accuracy, cost_study;
     without name, statics, effects, ensemble);
 numbers!(Well: hole_diameter, survey, section);
 numbers!(HoleSection: from, hole_diameter, static_friction, dynamic_friction; without name);
@@ -131,6 +132,10 @@ numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pre
 numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
     without losses, surface_case);
 numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit, axial_speed, length_above; without top);
+numbers!(Bit: aggressiveness, static_ratio, weakening_speed, regularisation_speed; without law);
+numbers!(TopDrive: gain, frequency_hz, inertia, inertia_compensation, factor, time_constant; without kind, tuning);
+numbers!(ExcitingForce: measured_depth, above_bit, force, torque, frequency_hz, per_revolution, phase_deg, band_to_hz;
+    without direction, seed);
 numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
     static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);

@@ -26,6 +26,7 @@ presets! {
     "wells/extended-reach-5000m": "An extended-reach well of 5,000 m at 78 degrees, casing to 2,400 m: torque and drag, circulating density",
     "wells/motor-12in": "A 12 1/4 in motor assembly with MWD and LWD by its published tally, below drillpipe that continues",
     "wells/geothermal-12in": "A packed 12 1/4 in assembly in hard rock and water at 2,940 m, below drillpipe that continues",
+    "wells/stick-slip-1000m": "A vertical well of 1,000 m whose bit sticks and slips under an imposed speed, and turns evenly under a soft top drive",
     "wells/well-b-aarsnes": "Well B of Aarsnes and Shor, 2,500 m: stick-slip off bottom by friction of the wall",
     "closed/fast-heavy-mud": "The damped base case with 0.04 m3/s of mud of 2100 kg/m3: its largest orbits",
     "closed/building-well": "The damped base case in a well that builds from 25 to 60 degrees",

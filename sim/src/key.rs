@@ -106,12 +106,13 @@ macro_rules! as_it_is {
 }
 
 /// Sections of a scenario in the order of their names, without its name.
-const SECTIONS: [Section; 15] = [
+const SECTIONS: [Section; 18] = [
     Section {
         name: "accuracy",
         is_same: |a, b, _| a.scenario.accuracy == b.accuracy,
         value: |scenario, _| accuracy(scenario),
     },
+    as_it_is!(bit),
     Section {
         name: "contact",
         is_same: |a, b, _| a.scenario.contact == b.contact,
@@ -126,6 +127,7 @@ const SECTIONS: [Section; 15] = [
         value: |_, active| effects(active),
     },
     as_it_is!(ensemble),
+    as_it_is!(excitation),
     as_it_is!(hydraulics),
     Section {
         name: "mesh",
@@ -145,6 +147,7 @@ const SECTIONS: [Section; 15] = [
         is_same: |a, b, _| a.scenario.string == b.string,
         value: |scenario, _| string(scenario),
     },
+    as_it_is!(top_drive),
     Section {
         name: "well",
         is_same: |a, b, _| a.scenario.well == b.well,
@@ -286,6 +289,10 @@ fn with_every_section() -> Scenario {
         ("cost_study", study),
         ("well.section", json!([{ "from": 100.0 }])),
         ("hydraulics.nozzles", json!([0.01])),
+        (
+            "excitation",
+            json!([{ "above_bit": 0.0, "direction": "axial", "force": 1.0, "frequency_hz": 1.0 }]),
+        ),
     ];
     let mut scenario = preset("paper-200m").expect("the preset of the paper is part of the program");
     for (path, value) in changes {
@@ -499,7 +506,8 @@ mod tests {
             assert!(!seen.contains(&bytes), "{pointer} does not count");
             seen.push(bytes);
         }
-        for &effect in Effect::ALL {
+        let active = active_effects(&scenario);
+        for &effect in Effect::ALL.iter().filter(|&&effect| active.is_active(effect)) {
             let mut changed = scenario.clone();
             changed.effects.set(effect, Switch::Off);
             assert!(!seen.contains(&canonical_json(&changed)), "{} does not count", effect.name());
@@ -646,6 +654,7 @@ mod tests {
         let single = [
             ".accuracy.spectral_radius",
             ".accuracy.tolerance",
+            ".bit.aggressiveness",
             ".contact.damping_per_length",
             ".contact.stiffness_per_length",
             ".cost_study.duration",
@@ -654,6 +663,10 @@ mod tests {
             ".cost_study.reference.methods.spectral_radius",
             ".cost_study.reference.methods.tolerance",
             ".cost_study.total",
+            ".excitation.band_to_hz",
+            ".excitation.measured_depth",
+            ".excitation.per_revolution",
+            ".excitation.torque",
             ".hydraulics.nozzle_area",
             ".hydraulics.surface_case",
             ".operation.length_above",
@@ -670,6 +683,7 @@ mod tests {
             ".string.sections.stiffness_outer_diameter",
             ".string.sections.tool_joint.material.grade",
             ".string.unbalance.above_bit",
+            ".top_drive.frequency_hz",
             ".well.section.dynamic_friction",
             ".well.section.hole_diameter",
             ".well.section.static_friction",

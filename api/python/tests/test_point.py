@@ -203,7 +203,8 @@ def test_tables_come_as_arrays(sweep: Sweep) -> None:
     energy = point.energy()
     # What came in, less what was dissipated, is there, but for the residual.
     there = energy["kinetic"] + energy["stored"]
-    received = energy["work_unbalance"] + energy["work_rotation"] + energy["work_flow_and_torque"]
+    works = ("unbalance", "rotation", "flow_and_torque", "bit", "excitation", "drive")
+    received = sum(energy[f"work_{work}"] for work in works)
     kinds = ("structure", "fluid", "friction", "contact")
     dissipated = sum(energy[f"dissipated_{kind}"] for kind in kinds)
     np.testing.assert_allclose(there - there[0] - received + dissipated, energy["residual"], rtol=1e-9, atol=1e-6)

@@ -5,7 +5,14 @@ import { canvas, DASHES, draw, LINES } from "../draw/plots.js";
 import { TimeLine } from "../draw/time-line.js";
 import { fill, h } from "../ui/dom.js";
 
-const SUPPLIED = ["work_unbalance", "work_rotation", "work_flow_and_torque"];
+const SUPPLIED = [
+  "work_unbalance",
+  "work_rotation",
+  "work_flow_and_torque",
+  "work_bit",
+  "work_excitation",
+  "work_drive",
+];
 const DISSIPATED = [
   "dissipated_structure",
   "dissipated_fluid",
@@ -13,6 +20,8 @@ const DISSIPATED = [
   "dissipated_contact",
   "radiated_top",
 ];
+/** Accounts of few strings, which are shown if they hold anything. */
+const OF_FEW = ["work_bit", "work_excitation", "work_drive", "radiated_top"];
 /** Accounts of energy that can be gained or lost. */
 export const HELD = ["kinetic", "stored"];
 
@@ -31,9 +40,8 @@ export const ACCOUNTS = [...SUPPLIED, ...DISSIPATED, ...HELD, "residual"];
 export function ledger(columns) {
   const last = columns.time.length - 1;
   return {
-    // Waves leave the top of few strings.
     accounts: [...SUPPLIED, ...DISSIPATED, ...HELD].filter(
-      (name) => columns[name] && (name !== "radiated_top" || columns[name].some(Boolean)),
+      (name) => columns[name] && (!OF_FEW.includes(name) || columns[name].some(Boolean)),
     ),
     change: (name) => Number(columns[name][last]) - Number(columns[name][0]),
   };

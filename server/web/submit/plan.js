@@ -20,7 +20,7 @@ export function plannedPart(answer) {
       ? h(
           "p",
           { class: "small soft" },
-          `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz. Torque on bit is constant: stick-slip at the bit is not judged.`,
+          `${growing} torsional ${growing === 1 ? "mode grows" : "modes grow"}, up to ${number(plan.undamped_torsion.highest_hz, 3)} Hz.${plan.undamped_torsion.includes_bit ? "" : " Torque on bit is constant: stick-slip at the bit is not judged."}`,
         )
       : null,
   ];

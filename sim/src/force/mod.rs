@@ -4,15 +4,18 @@
 //! `NodalForce` and has one line in `list::nodal_forces`; if it does work on the motion it has one in `list::ENTRIES` and
 //! its account one in the ledger ([`effect::ACCOUNTS`]), and an effect of its own has one in the register of [effects](effect).
 
+pub(crate) mod bit_rock;
 pub mod contact;
 pub(crate) mod cut;
 pub mod drive;
 pub mod effect;
 pub(crate) mod end_load;
+pub(crate) mod excitation;
 pub(crate) mod list;
 pub mod mud;
 pub(crate) mod nodal;
 pub(crate) mod points;
 pub(crate) mod term;
+pub(crate) mod top_drive;
 pub(crate) mod unbalance;
 pub(crate) mod wall;

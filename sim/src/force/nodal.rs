@@ -7,6 +7,7 @@ use drillsweep_scenario::{ActiveEffects, Scenario};
 use crate::force::drive::Drive;
 use crate::math::dof::DOFS;
 use crate::string::MeshNode;
+use crate::string::well::NodeFrame;
 
 /// Scenario and string that determine the forces.
 pub(crate) struct ForceContext<'a> {
@@ -14,6 +15,8 @@ pub(crate) struct ForceContext<'a> {
     pub(crate) effects: &'a ActiveEffects,
     /// Nodes from the top.
     pub(crate) nodes: &'a [MeshNode],
+    /// Frames of the nodes.
+    pub(crate) frames: &'a [NodeFrame],
     pub(crate) drive: &'a Drive,
 }
 
@@ -31,13 +34,6 @@ pub(crate) struct NodeMotion {
 
 /// Time, motion and state at which a force is evaluated.
 #[derive(Clone, Copy)]
-#[cfg_attr(
-    not(test),
-    expect(
-        dead_code,
-        reason = "forces of every scenario follow time alone, those of tests their motion, too"
-    )
-)]
 pub(crate) struct At<'a> {
     /// Simulated time \[s\].
     pub(crate) time: f64,
@@ -108,6 +104,11 @@ pub(crate) trait NodalForce: fmt::Debug + Send + Sync {
     /// Longest step \[s\] that resolves it.
     fn longest_step(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Largest damping \[N s/m\] of a degree of freedom in any motion, which bounds the step of an explicit method; none if it is far below that of the structure.
+    fn largest_damping(&self) -> Option<(Place, f64)> {
+        None
     }
 
     /// Unknowns at the start.

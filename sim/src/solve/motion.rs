@@ -4,7 +4,7 @@ use drillsweep_scenario::{Effect, Switch};
 
 use crate::force::effect::{Account, DAMPING, ElementInMotion, MotionTerms, term};
 use crate::force::term::place_of_damping;
-use crate::math::dof::{DOFS, Dofs};
+use crate::math::dof::{DOFS, Dofs, THETA_Z};
 use crate::math::linalg::{Block, BlockTridiagonal};
 use crate::solve::model::{Model, NodalVector, add_element_matrix, add_element_vector, clear_held};
 use crate::solve::statics::Equilibrium;
@@ -92,6 +92,14 @@ impl Model {
                     add_element_matrix(&mut damping, e, term);
                 }
             }
+        }
+        if let Some(control) = &self.speed_control {
+            let top = |value: f64| {
+                Block::from_fn(|row, column| if (row, column) == (THETA_Z, THETA_Z) { value } else { 0.0 })
+            };
+            mass.add_block(0, 0, &top(control.inertia));
+            damping.add_block(0, 0, &top(control.damping));
+            stiffness.add_block(0, 0, &top(control.stiffness));
         }
         let held = self.held_without(still);
         let mut load = self.constant_load(&equilibrium.drag);

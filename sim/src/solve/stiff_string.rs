@@ -2,7 +2,7 @@
 //!
 //! Bending stiffness, clearance, gauges and the flow of the mud take part, which a soft string lacks. A case takes as long as an equilibrium.
 
-use drillsweep_scenario::{Effect, Scenario, StartFriction, Switch};
+use drillsweep_scenario::{Bit, Effect, Scenario, StartFriction, Switch};
 
 use super::model::{Model, ModelError};
 use super::soft_string::{
@@ -86,6 +86,8 @@ fn in_case(
     }
     moving.string.gauges.retain(|gauge| gauge.depth(bit_depth) >= 0.0);
     moving.string.unbalance.clear();
+    moving.excitation.clear();
+    moving.bit = Bit::default();
     moving.recording.nodes.clear();
     moving.string.bit_depth = Some(bit_depth);
     moving.effects.set(Effect::Transient, Switch::Off);
@@ -98,7 +100,7 @@ fn in_case(
     } else if operation.rotation_speed_rpm == 0.0 {
         operation.rotation_speed_rpm = 1.0;
     }
-    let [weight_on_bit, torque_on_bit] = mode.bit_loads(&scenario.operation);
+    let [weight_on_bit, torque_on_bit] = mode.bit_loads(&scenario.in_hole().operation);
     operation.weight_on_bit = weight_on_bit;
     // The rock opposes the rotation.
     operation.torque_on_bit = if operation.rotation_speed_rpm < 0.0 { torque_on_bit } else { -torque_on_bit };

@@ -27,10 +27,10 @@ pub enum MeshError {
     /// The mesh has more than [`MAX_ELEMENTS`] elements.
     #[error("the mesh has more than {MAX_ELEMENTS} elements")]
     TooManyElements,
-    /// A gauge or mass is above the top or below the bit.
+    /// A gauge, mass or excitation is above the top or below the bit.
     #[error("{what} {index} at {measured_depth} m is not on the string")]
     OffString {
-        /// "gauge" or "unbalance mass".
+        /// "gauge", "unbalance mass" or "excitation".
         what: &'static str,
         /// Its place in the list.
         index: usize,

@@ -74,15 +74,15 @@ pub struct StringMesh {
 
 impl StringMesh {
     /// Cuts the string of a scenario that is in the hole into elements of the scenario's mesh (docs/model/well.md, Mesh). Every change
-    /// of section, tool joint, hole section, gauge and unbalance mass is a node; each part between two of these becomes the
+    /// of section, tool joint, hole section, gauge, unbalance mass and excitation is a node; each part between two of these becomes the
     /// fewest equal elements no longer than its target.
     ///
     /// With the mesh `auto`, depths whose motion is recorded are nodes, too. A place within [`SNAP_FRACTION`](super::SNAP_FRACTION) of the target length of a boundary is
     /// moved to it. Two gauges that meet at one node have the smaller clearance.
     ///
     /// # Errors
-    /// A section has no length, a target is not positive, there are more than [`MAX_ELEMENTS`] elements, or a gauge or
-    /// mass is not on the string.
+    /// A section has no length, a target is not positive, there are more than [`MAX_ELEMENTS`] elements, or a gauge, mass or
+    /// excitation is not on the string.
     pub fn new(scenario: &Scenario) -> Result<Self, MeshError> {
         let scenario = &*scenario.in_hole();
         let string = &scenario.string;
@@ -91,15 +91,18 @@ impl StringMesh {
         let all_gauges = scenario.gauges();
         let gauges = all_gauges.iter().map(|gauge| gauge.depth(length));
         let masses = string.unbalance.iter().map(|mass| mass.depth(length));
+        let excitations = scenario.excitation.iter().map(|force| force.depth(length));
         on_string("gauge", gauges.clone(), length)?;
         on_string("unbalance mass", masses.clone(), length)?;
+        on_string("excitation", excitations.clone(), length)?;
         // The user numbers the nodes if lengths are given; otherwise motion is recorded at a depth, on every mesh.
         let is_recorded = |choice: &NodeChoice| {
             choice.depth(length).filter(|depth| scenario.mesh.is_auto() && is_on_string(*depth, length))
         };
         let recorded = scenario.recording.nodes.iter().filter_map(is_recorded);
         let hole_sections = scenario.well.section.iter().map(|section| section.from);
-        let places: Vec<f64> = gauges.chain(masses).chain(recorded).chain(hole_sections).collect();
+        let places: Vec<f64> =
+            gauges.chain(masses).chain(excitations).chain(recorded).chain(hole_sections).collect();
         let elements = cut(&boundaries::split(stretches, &places), scenario)?;
 
         let mut mesh = Self { nodes: bare_nodes(&elements, length), elements };

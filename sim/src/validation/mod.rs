@@ -1,6 +1,7 @@
 //! Validation of scenarios: every rule for simulation, checked all at once.
 
 mod accuracy;
+mod drive;
 mod hole;
 mod loads;
 mod report;
@@ -31,7 +32,7 @@ pub fn validate_changes<'a>(
     scenario: &Scenario,
     changed: impl IntoIterator<Item = &'a str>,
 ) -> Result<Vec<Warning>, Problems> {
-    let shapes = ["well", "string", "mesh", "recording", "cost_study"];
+    let shapes = ["well", "string", "mesh", "recording", "cost_study", "excitation"];
     let leads_to = |path: &str, part: &str| {
         path.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
@@ -64,6 +65,7 @@ fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems
         None
     };
     loads::check(&mut report, scenario);
+    drive::check(&mut report, written);
     time::check(&mut report, scenario, mesh.as_ref());
     report.finish()
 }

@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, Material, Mesh, MeshName, NodeChoice, PlacedSection, ScaledMesh, Scenario,
-    Section, ToolJoint, WallLaw,
+    DrillString, ElementLengths, ExcitationDirection, Material, Mesh, MeshName, NodeChoice, PlacedSection,
+    ScaledMesh, Scenario, Section, ToolJoint, TopCondition, TopDriveKind, WallLaw,
 };
 
 use super::report::Report;
@@ -68,7 +68,12 @@ pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario
 }
 
 /// Requires that a place is given in one way.
-fn has_place(report: &mut Report, path: &str, measured_depth: Option<f64>, above_bit: Option<f64>) {
+pub(super) fn has_place(
+    report: &mut Report,
+    path: &str,
+    measured_depth: Option<f64>,
+    above_bit: Option<f64>,
+) {
     const EITHER: &str = "give either measured_depth or above_bit";
     match (measured_depth, above_bit) {
         (Some(_), Some(above)) => {
@@ -357,6 +362,7 @@ fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<
     let mut bare = scenario.clone();
     bare.string.gauges.clear();
     bare.string.unbalance.clear();
+    bare.excitation.clear();
     let length = match StringMesh::new(&bare) {
         Ok(mesh) => mesh.length(),
         Err(MeshError::TooManyElements) => {
@@ -369,7 +375,12 @@ fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<
     let string = &written.string;
     let gauges = string.gauges.iter().map(|gauge| (gauge.measured_depth, gauge.above_bit));
     let masses = string.unbalance.iter().map(|mass| (mass.measured_depth, mass.above_bit));
-    for (list, places) in [("gauges", gauges.collect::<Vec<_>>()), ("unbalance", masses.collect())] {
+    let forces = written.excitation.iter().map(|force| (force.measured_depth, force.above_bit));
+    for (list, places) in [
+        ("string.gauges", gauges.collect::<Vec<_>>()),
+        ("string.unbalance", masses.collect()),
+        ("excitation", forces.collect()),
+    ] {
         for (i, (measured_depth, above_bit)) in places.into_iter().enumerate() {
             let hint = match (measured_depth, string.bit_depth) {
                 (Some(_), Some(_)) => "; above_bit moves with the bit",
@@ -377,7 +388,7 @@ fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<
             };
             report.number(
                 above_bit.or(measured_depth).unwrap_or(f64::NAN),
-                place_field(&format!("string.{list}[{i}]"), above_bit),
+                place_field(&format!("{list}[{i}]"), above_bit),
                 |place| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&place),
                 format!("must be on the string, 0 to {length} m{hint}"),
             );
@@ -389,7 +400,7 @@ fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<
             too_fine(report, scenario);
             None
         }
-        // Only gauges and masses off the string and invalid materials are left, reported above.
+        // Only gauges, masses and excitations off the string and invalid materials are left, reported above.
         Err(_) => None,
     }
 }
@@ -408,7 +419,7 @@ fn too_fine(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-/// Checks clearances of gauges next to those of the bodies, and warns of gauges and masses without effect.
+/// Checks clearances of gauges next to those of the bodies, and warns of gauges, masses and excitations without effect.
 fn clearances(report: &mut Report, written: &Scenario, mesh: &StringMesh) {
     let (string, bit) = (&written.string, mesh.length());
     for (i, gauge) in string.gauges.iter().enumerate() {
@@ -426,23 +437,35 @@ fn clearances(report: &mut Report, written: &Scenario, mesh: &StringMesh) {
         }
         let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.depth(bit)) == node);
         report.warn(shared, &path, "another gauge is at the same node; the smaller clearance holds");
-        placed(report, &place_field(&path, gauge.above_bit), gauge.depth(bit), node, mesh);
+        placed(report, &place_field(&path, gauge.above_bit), (gauge.depth(bit), node), true, mesh);
     }
     for (i, mass) in string.unbalance.iter().enumerate() {
         let path = place_field(&format!("string.unbalance[{i}]"), mass.above_bit);
-        placed(report, &path, mass.depth(bit), mesh.nearest_node(mass.depth(bit)), mesh);
+        let depth = mass.depth(bit);
+        placed(report, &path, (depth, mesh.nearest_node(depth)), true, mesh);
+    }
+    for (i, force) in written.excitation.iter().enumerate() {
+        let path = place_field(&format!("excitation[{i}]"), force.above_bit);
+        let depth = force.depth(bit);
+        let moves = force.direction == ExcitationDirection::Torsional && top_moves(written);
+        placed(report, &path, (depth, mesh.nearest_node(depth)), !moves, mesh);
     }
 }
 
+/// True if the top of the string twists.
+pub(super) fn top_moves(scenario: &Scenario) -> bool {
+    scenario.top_drive.kind != TopDriveKind::ImposedSpeed || scenario.operation.top == TopCondition::Continues
+}
+
 /// Warns of a place that was moved to a nearby boundary, or that is held.
-fn placed(report: &mut Report, path: &str, depth: f64, node: usize, mesh: &StringMesh) {
+fn placed(report: &mut Report, path: &str, (depth, node): (f64, usize), is_held: bool, mesh: &StringMesh) {
     let found = mesh.nodes[node].measured_depth;
     report.warn(
         (found - depth).abs() > SAME_DEPTH,
         path,
         format!("moved from {depth} m to the node at {found} m, a small part of an element away"),
     );
-    report.warn(node == 0, path, "is at the top node, which is held: it has no effect there");
+    report.warn(is_held && node == 0, path, "is at the top node, which is held: it has no effect there");
 }
 
 #[cfg(test)]

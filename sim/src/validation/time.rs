@@ -6,6 +6,7 @@ use drillsweep_scenario::{
 
 use super::accuracy::check_accuracy;
 use super::report::Report;
+use super::string::top_moves;
 use super::window::{check_window, is_whole};
 use super::{snapshots, study};
 use crate::force::effect::active_effects;
@@ -69,7 +70,7 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario, mesh: Option<&Stri
         "no node is recorded: there will be no history",
     );
     if let Some(mesh) = mesh {
-        check_nodes(report, &recording.nodes, mesh);
+        check_nodes(report, scenario, mesh);
     }
     check_outputs(report, scenario, mesh);
     snapshots::check(report, scenario, mesh);
@@ -174,9 +175,9 @@ fn check_samples(report: &mut Report, scenario: &Scenario) {
     );
 }
 
-fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
+fn check_nodes(report: &mut Report, scenario: &Scenario, mesh: &StringMesh) {
     let mut seen: Vec<(usize, usize)> = Vec::new();
-    for (i, &choice) in choices.iter().enumerate() {
+    for (i, &choice) in scenario.recording.nodes.iter().enumerate() {
         let path = format!("recording.nodes[{i}]");
         let Some(node) = mesh.chosen_node(choice) else {
             match choice {
@@ -207,7 +208,8 @@ fn check_nodes(report: &mut Report, choices: &[NodeChoice], mesh: &StringMesh) {
             ),
             None => seen.push((node, i)),
         }
-        report.warn(node == 0, path, "the top node is held: its record is constant");
+        let is_held = node == 0 && !top_moves(scenario);
+        report.warn(is_held, path, "the top node is held: its record is constant");
     }
 }
 

@@ -24,6 +24,7 @@ FAMILIES: tuple[dict[str, str], ...] = (
     {"rpm": "rpm", "rev/min": "turn/min", "rad/s": "radian/s", "deg/s": "degree/s", "rev/s": "turn/s"},
     {"kg": "kg", "g": "gram", "t": "metric_ton", "lb": "pound"},
     {"kg/m": "kg/m", "lb/ft": "pound/ft"},
+    {"kg m2": "kg*m**2", "lb ft2": "pound*ft**2"},
     {"kg/m3": "kg/m**3", "g/cm3": "g/cm**3", "kg/l": "kg/liter", "ppg": "pound/gallon", "lb/ft3": "pound/ft**3"},
     {"m3/s": "m**3/s", "m3/min": "m**3/min", "m3/h": "m**3/h", "l/s": "liter/s", "l/min": "liter/min"}
     | {"gpm": "gallon/min", "bbl/min": "oil_barrel/min"},

@@ -77,6 +77,7 @@ fn frequency_change(scenario: &Scenario, effect: Effect) -> f64 {
 #[cfg(test)]
 mod tests {
     use drillsweep_scenario::{Effects, SurveyStation, preset};
+    use serde_json::json;
 
     use super::*;
     use crate::key::canonical_json;
@@ -85,12 +86,17 @@ mod tests {
         preset("paper-200m").unwrap()
     }
 
-    /// Names of the effects that `auto` omits.
+    /// Effects of sections that the base case lacks.
+    const OF_OWN_SECTIONS: [Effect; 3] = [Effect::BitRock, Effect::Excitation, Effect::TopDrive];
+
+    /// Names of the effects that `auto` omits, but those of sections that the base case lacks.
     fn left_out(change: impl Fn(&mut Scenario)) -> Vec<&'static str> {
         let mut scenario = paper();
         scenario.effects = Effects::default();
         change(&mut scenario);
-        let left_out = decide_effects(&scenario).into_iter().filter(|decision| !decision.active);
+        let left_out = decide_effects(&scenario)
+            .into_iter()
+            .filter(|decision| !decision.active && !OF_OWN_SECTIONS.contains(&decision.effect));
         left_out.map(|decision| decision.effect.name()).collect()
     }
 
@@ -153,6 +159,37 @@ mod tests {
     }
 
     #[test]
+    fn bit_excitation_and_drive_take_part_if_the_scenario_has_them() {
+        let active = |path: &str, value: serde_json::Value| {
+            let scenario = paper().with(path, value).unwrap();
+            OF_OWN_SECTIONS.map(|effect| active_effects(&scenario).is_active(effect))
+        };
+        assert_eq!(active("name", json!("base case")), [false; 3]);
+        assert_eq!(active("bit.law", json!("velocity_weakening")), [true, false, false]);
+        let force = json!([{ "above_bit": 1.0, "direction": "axial", "force": 1e4, "frequency_hz": 18.0 }]);
+        assert_eq!(active("excitation", force), [false, true, false]);
+        assert_eq!(active("top_drive.kind", json!("speed_control")), [false, false, true]);
+        // A straight string without friction turns evenly but for its bit, and moves along itself under an axial force alone.
+        let mut straight = paper().with("bit.law", json!("velocity_weakening")).unwrap();
+        for station in &mut straight.well.survey {
+            (station.inclination_deg, station.azimuth_deg) = (60.0, 30.0);
+        }
+        (straight.contact.static_friction, straight.contact.dynamic_friction) = (0.0, 0.0);
+        let of = |scenario: &Scenario| {
+            let active = active_effects(scenario);
+            [active.torsion, active.axial_motion]
+        };
+        assert_eq!(of(&straight), [true, false]);
+        straight.operation.torque_on_bit = 0.0;
+        assert_eq!(of(&straight), [false, false]);
+        let force = json!([{ "above_bit": 1.0, "direction": "axial", "force": 1e4, "frequency_hz": 18.0 }]);
+        assert_eq!(of(&straight.with("excitation", force).unwrap()), [false, true]);
+        let torque =
+            json!([{ "above_bit": 1.0, "direction": "torsional", "torque": 1e3, "per_revolution": 3.0 }]);
+        assert_eq!(of(&straight.with("excitation", torque).unwrap()), [true, false]);
+    }
+
+    #[test]
     fn on_and_off_are_obeyed_and_named() {
         let mut scenario = paper();
         scenario.effects.set(Effect::Contact, Switch::Off);
@@ -174,7 +211,7 @@ mod tests {
     #[test]
     fn the_aggressive_rule_omits_small_effects_with_an_estimate() {
         let mut scenario = paper();
-        assert!(decide_effects(&scenario).iter().all(|decision| decision.active));
+        assert_eq!(left_out(|_| {}), [""; 0]);
         scenario.effects.auto = AutoRule::Aggressive;
         let decisions = decide_effects(&scenario);
         let of = |effect| decisions.iter().find(|decision| decision.effect == effect).unwrap();
@@ -195,7 +232,7 @@ mod tests {
     #[test]
     fn an_effect_on_and_an_effect_that_auto_activates_share_a_key() {
         let mut asked = paper();
-        for &effect in Effect::ALL {
+        for &effect in Effect::ALL.iter().filter(|effect| !OF_OWN_SECTIONS.contains(effect)) {
             asked.effects.set(effect, Switch::On);
         }
         assert_eq!(canonical_json(&asked), canonical_json(&paper()));

@@ -7,13 +7,16 @@ use crate::force::term::{
     fluid_coriolis, fluid_damping, gravity, gyroscopic, mud_drag, structural_damping, torque_stiffening,
     torsion, transient, well_bending,
 };
-use crate::force::{cut, unbalance, wall};
+use crate::force::{bit_rock, cut, excitation, top_drive, unbalance, wall};
 
 /// The accounts of the energy ledger, in the order of its columns.
-pub const ACCOUNTS: [&Account; 9] = [
+pub const ACCOUNTS: [&Account; 12] = [
     &unbalance::WORK,
     &wall::friction_torque::ROTATION,
     &fluid_coriolis::WORK,
+    &bit_rock::WORK,
+    &excitation::WORK,
+    &top_drive::WORK,
     &structural_damping::DISSIPATED,
     &fluid_damping::DISSIPATED,
     &wall::friction::DISSIPATED,
@@ -39,6 +42,9 @@ pub(crate) const fn term(effect: Effect) -> Term {
         Effect::Friction => wall::friction::TERM,
         Effect::FrictionTorque => wall::friction_torque::TERM,
         Effect::Unbalance => unbalance::TERM,
+        Effect::BitRock => bit_rock::TERM,
+        Effect::Excitation => excitation::TERM,
+        Effect::TopDrive => top_drive::TERM,
         Effect::Gyroscopic => gyroscopic::TERM,
         Effect::AxialStiffening => axial_stiffening::TERM,
         Effect::TorqueStiffening => torque_stiffening::TERM,

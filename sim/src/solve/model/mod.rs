@@ -17,6 +17,7 @@ use crate::force::drive::Drive;
 use crate::force::effect::active_effects;
 use crate::force::list::nodal_forces;
 use crate::force::nodal::{At, Dependence, ForceContext, NodalForce, NodeMotion};
+use crate::force::top_drive::SpeedControl;
 use crate::math::dof::{DOFS, THETA_Z, U, V, W};
 use crate::math::linalg::{Block, BlockTridiagonal};
 use crate::string::beam::{BeamSection, ElementMatrix, ElementVector};
@@ -47,6 +48,8 @@ pub struct Model {
     pub rotation_speed: f64,
     /// Forces at nodes but the wall's.
     pub(crate) forces: Vec<Arc<dyn NodalForce>>,
+    /// Control of the speed at the top, if it yields.
+    pub(crate) speed_control: Option<SpeedControl>,
 }
 
 /// Reason for which a scenario has no model.
@@ -89,11 +92,13 @@ impl Model {
             })
             .collect();
         let drive = Drive::new(&scenario.operation);
-        let force_context = ForceContext { scenario, effects: &effects, nodes: &mesh.nodes, drive: &drive };
+        let force_context =
+            ForceContext { scenario, effects: &effects, nodes: &mesh.nodes, frames: &frames, drive: &drive };
         Ok(Self {
             scenario: scenario.clone(),
             effects,
             forces: nodal_forces(&force_context),
+            speed_control: SpeedControl::of(scenario, &effects),
             wall: Self::wall(scenario, &effects, &mesh, &elements),
             mesh,
             frames,
@@ -111,10 +116,12 @@ impl Model {
         turning.effects = active_effects(&turning.scenario);
         turning.drive = Drive::new(&turning.scenario.operation);
         turning.rotation_speed = turning.drive.nominal_speed();
+        turning.speed_control = SpeedControl::of(&turning.scenario, &turning.effects);
         turning.forces = nodal_forces(&ForceContext {
             scenario: &turning.scenario,
             effects: &turning.effects,
             nodes: &turning.mesh.nodes,
+            frames: &turning.frames,
             drive: &turning.drive,
         });
         turning
@@ -166,11 +173,12 @@ impl Model {
         }
     }
 
-    /// Degrees of freedom of node `node` that move though the top's boundary condition holds them in equilibrium; there the pipe above carries its
-    /// force of the equilibrium on.
+    /// Degrees of freedom of node `node` that move though the top's boundary condition holds them in equilibrium; there the pipe above, or the
+    /// top drive, carries its force of the equilibrium on.
     pub fn released_in_motion(&self, node: usize) -> [bool; DOFS] {
         match (node, self.scenario.operation.top) {
             (0, TopCondition::Continues) => std::array::from_fn(|dof| [W, THETA_Z].contains(&dof)),
+            (0, _) if self.speed_control.is_some() => std::array::from_fn(|dof| dof == THETA_Z),
             _ => [false; DOFS],
         }
     }

@@ -37,17 +37,17 @@ use walk::{eigenpairs, uncounted_eigenpairs};
 /// The modes of a model about its equilibrium.
 ///
 /// # Errors
-/// The band is empty, its eigenvalues cannot be found, or the string has an axial speed.
+/// The band is empty, its eigenvalues cannot be found, or the string has an axial speed or a top drive with Z-torque.
 pub fn modes(model: &Model, equilibrium: &Equilibrium, search: &ModeSearch) -> Result<Modes, ModesError> {
-    ModesError::require_no_axial_speed(model.body_motion())?;
+    ModesError::require_modes(model)?;
     modes_of(&Pencil::about(model, equilibrium), &model.mesh.depths(), search)
 }
 
 /// The modes of a model about its equilibrium in bands of frequencies \[Hz\] that do not overlap. A whole well has some thousand modes up to 20 Hz,
-/// and counting those of a band takes longer than finding them, so that they are not counted.
+/// and counting those of a band takes longer than finding them, so that they are not counted. A top drive with Z-torque counts as a stiff one.
 ///
 /// # Errors
-/// As [`modes`].
+/// As [`modes`] but for Z-torque.
 pub fn modes_in(
     model: &Model,
     equilibrium: &Equilibrium,

@@ -10,12 +10,18 @@ use super::arnoldi::Eigenpair;
 use super::pencil::Pencil;
 use crate::force::contact::BodyMotion;
 use crate::math::dof::DOFS;
+use crate::solve::model::Model;
 
 /// Size of `Mode::whirl` from which a mode counts as whirling in one sense.
 const ONE_SENSE: f64 = 0.1;
 
-/// Limit of every statement that modes decay: equations with a constant torque on bit hold no feedback of the bit's speed on it.
+/// Limit of every statement that modes decay if torque on bit is constant: the equations then hold no feedback of the bit's speed on it.
 pub const BIT_NOT_JUDGED: &str = "torque on bit is constant: stick-slip at the bit is not judged";
+
+/// That limit after a statement, unless torque on bit follows the speed of the bit.
+pub(super) fn limit_of_bit(includes_bit: bool) -> String {
+    if includes_bit { String::new() } else { format!("; {BIT_NOT_JUDGED}") }
+}
 
 /// The band that is searched.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,6 +153,11 @@ pub enum ModesError {
         /// Axial speed \[m/s\].
         speed: f64,
     },
+    /// The control of the top drive has a state of its own, which the equations of modes do not hold.
+    #[error(
+        "modes do not hold the torque filter of z_torque: take top_drive.kind speed_control or imposed_speed, or a run in time"
+    )]
+    TorqueFilter,
     /// The iteration did not find the eigenvalues around a shift.
     #[error("the eigenvalues around {frequency_hz:.3} Hz could not be found")]
     NotFound {
@@ -156,6 +167,13 @@ pub enum ModesError {
 }
 
 impl ModesError {
+    /// Refuses what small motions without unknowns of forces do not hold.
+    pub(super) fn require_modes(model: &Model) -> Result<(), Self> {
+        Self::require_no_axial_speed(model.body_motion())?;
+        let has_unknowns = model.forces.iter().any(|force| !force.unknowns().is_empty());
+        if has_unknowns { Err(Self::TorqueFilter) } else { Ok(()) }
+    }
+
     /// Refuses a string with an axial speed: small motions about its equilibrium need axial friction in motion.
     pub(super) fn require_no_axial_speed(motion: BodyMotion) -> Result<(), Self> {
         let speed = motion.axial_speed;

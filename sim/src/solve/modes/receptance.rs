@@ -57,6 +57,14 @@ impl<'a> Receptance<'a> {
         response
     }
 
+    /// Amplitude \[m/N, rad/(N m)\] of a degree of freedom of a node by a force along it.
+    #[cfg(test)]
+    pub(crate) fn of_node(&self, (node, dof): (usize, usize)) -> Complex<f64> {
+        let mut load = self.no_load();
+        load[node][dof] = Complex::new(1.0, 0.0);
+        self.to(load)[node][dof]
+    }
+
     fn no_load(&self) -> Response {
         vec![[Complex::new(0.0, 0.0); DOFS]; self.held.len()]
     }

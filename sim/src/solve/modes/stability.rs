@@ -7,7 +7,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::arnoldi::Eigenpair;
-use super::mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, ModesError};
+use super::mode::{Completeness, Mode, ModeKind, ModeSearch, ModesError, limit_of_bit};
 use super::pencil::{Pencil, add_contact, times};
 use super::walk::{Found, eigenpairs, uncounted_eigenpairs};
 use crate::force::contact::sliding_tangent;
@@ -37,6 +37,9 @@ pub struct Stability {
     pub completeness: Completeness,
     /// The mode that grows fastest; absent if the scenario is stable.
     pub instability: Option<Instability>,
+    /// True if torque on bit follows the speed of the bit, so that stick-slip of the bit is included.
+    #[serde(default)]
+    pub includes_bit: bool,
 }
 
 /// The mode that grows fastest, with the source of its energy.
@@ -72,6 +75,8 @@ pub enum InstabilityKind {
     FrictionWhirl,
     /// Velocity-weakening friction excites torsion: stick-slip.
     StickSlip,
+    /// Torque on bit that falls with the speed of the bit excites torsion: stick-slip of the bit.
+    BitStickSlip,
     /// Anything else.
     Other,
 }
@@ -86,6 +91,7 @@ impl InstabilityKind {
             InstabilityKind::FlowFlutter => "flutter by the flow",
             InstabilityKind::FrictionWhirl => "whirl by friction",
             InstabilityKind::StickSlip => "stick-slip by velocity-weakening friction",
+            InstabilityKind::BitStickSlip => "stick-slip by the torque on bit",
             InstabilityKind::Other => "an instability",
         }
     }
@@ -97,14 +103,17 @@ impl fmt::Display for Stability {
             None if self.stable == Some(true) => {
                 write!(
                     formatter,
-                    "stable about its equilibrium up to {:.0} Hz; {BIT_NOT_JUDGED}",
-                    self.complete_to_hz
+                    "stable about its equilibrium up to {:.0} Hz{}",
+                    self.complete_to_hz,
+                    limit_of_bit(self.includes_bit)
                 )
             }
             None => write!(
                 formatter,
-                "no growing mode about its equilibrium was found up to {:.0} Hz; {}; {BIT_NOT_JUDGED}",
-                self.complete_to_hz, self.completeness
+                "no growing mode about its equilibrium was found up to {:.0} Hz; {}{}",
+                self.complete_to_hz,
+                self.completeness,
+                limit_of_bit(self.includes_bit)
             ),
             Some(unstable) => write!(formatter, "physically unstable: {unstable}"),
         }
@@ -148,7 +157,7 @@ impl Stability {
 /// # Errors
 /// The modes cannot be found.
 pub fn stability(model: &Model, equilibrium: &Equilibrium) -> Result<Stability, ModesError> {
-    ModesError::require_no_axial_speed(model.body_motion())?;
+    ModesError::require_modes(model)?;
     let pencil = Pencil::about(model, equilibrium);
     let search = ModeSearch { to_hz: BAND_HZ, ..ModeSearch::default() };
     let found = eigenpairs(&pencil, &search)?;
@@ -222,6 +231,7 @@ impl Stability {
                     growing_modes: growing.count(),
                 }
             }),
+            includes_bit: model.effects.bit_rock,
         }
     }
 
@@ -251,8 +261,16 @@ fn kind(
     moves: ModeKind,
 ) -> InstabilityKind {
     let zero = || BlockTridiagonal::zeros(model.node_count());
-    let [mut compression, mut torque, mut flow, mut coriolis, mut wall, mut rubbing] =
-        std::array::from_fn(|_| zero());
+    let [
+        mut compression,
+        mut torque,
+        mut flow,
+        mut coriolis,
+        mut wall,
+        mut rubbing,
+        mut at_nodes,
+        mut of_nodes,
+    ] = std::array::from_fn(|_| zero());
     for (e, element) in model.elements.iter().enumerate() {
         if let Some(unit) = &element.tension_unit {
             add_element_matrix(&mut compression, e, &(unit * equilibrium.tension[e]));
@@ -269,7 +287,17 @@ fn kind(
         }
     }
     add_contact(model, equilibrium, &mut wall, &mut rubbing);
-    for matrix in [&mut compression, &mut torque, &mut flow, &mut coriolis, &mut wall, &mut rubbing] {
+    model.add_force_tangents(&model.at_rest(&equilibrium.displacement), &mut at_nodes, Some(&mut of_nodes));
+    for matrix in [
+        &mut compression,
+        &mut torque,
+        &mut flow,
+        &mut coriolis,
+        &mut wall,
+        &mut rubbing,
+        &mut at_nodes,
+        &mut of_nodes,
+    ] {
         clear_held(matrix, &pencil.held);
     }
     // Mean power of a force -(K + l C) x on the velocity l x.
@@ -288,6 +316,7 @@ fn kind(
         power(&torque, None),
         power(&flow, Some(&coriolis)),
         power(&wall, Some(&rubbing)),
+        power(&at_nodes, Some(&of_nodes)),
     ];
     let most = (0..powers.len()).max_by(|&a, &b| powers[a].total_cmp(&powers[b])).unwrap_or(0);
     let still = does_not_vibrate(pair);
@@ -299,6 +328,7 @@ fn kind(
         2 => InstabilityKind::FlowFlutter,
         3 if moves == ModeKind::Torsional => InstabilityKind::StickSlip,
         3 => InstabilityKind::FrictionWhirl,
+        4 if moves == ModeKind::Torsional => InstabilityKind::BitStickSlip,
         _ => InstabilityKind::Other,
     }
 }
@@ -322,6 +352,7 @@ mod tests {
             complete_to_hz: 20.0,
             completeness: Completeness::Counted,
             instability: Some(unstable),
+            includes_bit: false,
         };
         assert!(!verdict.explains_divergence_at(0.023) && !verdict.explains_divergence_at(1.5));
         let early = verdict.of_divergence_at(0.023);
@@ -335,6 +366,8 @@ mod tests {
             stable.of_divergence_at(10.0).starts_with("numerical or unexplained: stable about"),
             "{stable}"
         );
-        assert!(stable.to_string().ends_with(BIT_NOT_JUDGED));
+        assert!(stable.to_string().ends_with("stick-slip at the bit is not judged"));
+        let with_bit = Stability { includes_bit: true, ..stable };
+        assert_eq!(with_bit.to_string(), "stable about its equilibrium up to 20 Hz");
     }
 }

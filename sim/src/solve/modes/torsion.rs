@@ -1,4 +1,4 @@
-//! Torsional modes that velocity-weakening friction excites, up to the frequency at which damping or the mesh ends them.
+//! Torsional modes that velocity-weakening friction and torque on bit excite, up to the frequency at which damping or the mesh ends them.
 //!
 //! Velocity-weakening friction is a negative damper at every sliding node. It excites torsion at all frequencies alike; only
 //! damping that grows with frequency (`damping.stiffness_proportional`) limits it. Without such damping, modes grow up to the highest frequency of
@@ -11,7 +11,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::mode::BIT_NOT_JUDGED;
+use super::mode::limit_of_bit;
+use crate::force::bit_rock::WeakeningTorque;
 use crate::force::contact::{sliding_segment, sliding_tangent};
 use crate::math::dof::THETA_Z;
 use crate::solve::model::{Model, element_values};
@@ -50,6 +51,9 @@ pub struct UndampedTorsion {
     pub mesh_hz: f64,
     /// True if modes grow up to the highest frequency of the mesh, so that mesh and step decide which torsion survives.
     pub up_to_the_mesh: bool,
+    /// True if torque on bit follows the speed of the bit, so that stick-slip of the bit is included.
+    #[serde(default)]
+    pub includes_bit: bool,
 }
 
 /// One mode of twist.
@@ -62,8 +66,8 @@ pub struct TorsionalMode {
 }
 
 impl UndampedTorsion {
-    /// The assessment of a model about its equilibrium; `None` if twist is not solved for, friction does not turn the string, or twist leaves
-    /// through a top that continues.
+    /// The assessment of a model about its equilibrium; `None` if twist is not solved for, neither friction nor the bit excites it, or the top of the string
+    /// yields.
     pub fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         Chain::about(model, equilibrium).map(|chain| chain.assessment())
     }
@@ -105,7 +109,7 @@ pub fn growing_torsion(model: &Model, equilibrium: &Equilibrium, to_hz: f64) -> 
 impl fmt::Display for UndampedTorsion {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.highest_hz, self.growing_modes) {
-            (None, _) => write!(formatter, "all torsional modes decay; {BIT_NOT_JUDGED}"),
+            (None, _) => write!(formatter, "all torsional modes decay{}", limit_of_bit(self.includes_bit)),
             (Some(highest), _) if self.up_to_the_mesh => write!(
                 formatter,
                 "torsional modes grow up to {highest:.0} Hz, where the mesh ends ({:.0} Hz): velocity-weakening friction excites them, and damping.stiffness_proportional does not suppress it, so torsion, and lateral motion with it, depends on mesh and step",
@@ -113,12 +117,14 @@ impl fmt::Display for UndampedTorsion {
             ),
             (Some(highest), Some(count)) => write!(
                 formatter,
-                "{count} torsional modes grow, the highest at {highest:.1} Hz; all above decay; {BIT_NOT_JUDGED}"
+                "{count} torsional modes grow, the highest at {highest:.1} Hz; all above decay{}",
+                limit_of_bit(self.includes_bit)
             ),
             (Some(highest), None) => {
                 write!(
                     formatter,
-                    "torsional modes may grow up to {highest:.1} Hz and decay above; {BIT_NOT_JUDGED}"
+                    "torsional modes may grow up to {highest:.1} Hz and decay above{}",
+                    limit_of_bit(self.includes_bit)
                 )
             }
         }
@@ -139,14 +145,15 @@ struct Chain {
     rubbing: Vec<f64>,
     /// alpha \[1/s\] and beta \[s\] of Rayleigh damping.
     rayleigh: [f64; 2],
+    /// True if torque on bit follows the speed of the bit.
+    includes_bit: bool,
 }
 
 impl Chain {
     fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         let effects = &model.effects;
-        if !(effects.torsion && effects.contact && effects.friction_torque)
-            || model.released_in_motion(0)[THETA_Z]
-        {
+        let is_excited = effects.contact && effects.friction_torque || effects.bit_rock;
+        if !(effects.torsion && is_excited) || model.released_in_motion(0)[THETA_Z] {
             return None;
         }
         // Twist is held at the top, so node i of the mesh is i - 1 here.
@@ -165,6 +172,7 @@ impl Chain {
             stiffness_to_next: zero.clone(),
             rubbing: zero,
             rayleigh,
+            includes_bit: effects.bit_rock,
         };
         for (below, element) in model.elements.iter().enumerate() {
             let section = element.beam.section();
@@ -194,6 +202,12 @@ impl Chain {
                 chain.rubbing[above] += upper;
             }
             chain.rubbing[e] += lower;
+        }
+        if let (Some(torque), Some(bit)) =
+            (WeakeningTorque::of(&model.scenario, effects), chain.rubbing.last_mut())
+        {
+            let [_, slope] = torque.change(0.0);
+            *bit -= slope;
         }
         Some(chain)
     }
@@ -226,6 +240,7 @@ impl Chain {
                 .unwrap_or(bound.largest_growth),
             mesh_hz,
             up_to_the_mesh: highest.is_some_and(|mode| mode.frequency_hz >= MESH_END * mesh_hz),
+            includes_bit: self.includes_bit,
         }
     }
 
@@ -254,6 +269,7 @@ impl Chain {
             largest_growth: 0.5 * surplus,
             mesh_hz,
             up_to_the_mesh: highest.is_some_and(|highest| highest >= MESH_END * mesh_hz),
+            includes_bit: self.includes_bit,
         }
     }
 
@@ -384,6 +400,7 @@ mod tests {
             stiffness_to_next: vec![-stiffness; count],
             rubbing: vec![rubbing; count],
             rayleigh,
+            includes_bit: false,
         };
         (chain.inertia[count - 1], chain.stiffness[count - 1]) = (2.0 * inertia, stiffness);
         chain
@@ -463,6 +480,7 @@ mod tests {
             largest_growth: 0.2,
             mesh_hz: mesh,
             up_to_the_mesh: highest == Some(mesh),
+            includes_bit: false,
         };
         assert_eq!(torsion(None, 4e3).warning(40.0), None);
         assert_eq!(torsion(Some(12.9), 4e3).warning(40.0), None);

@@ -1,93 +1,24 @@
-//! A force with a law of its own at the end of a string, in all parts of a run.
+//! Forces at nodes, bit and top drive in all parts of a run.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use drillsweep_scenario::{Accuracy, Integrator, Scenario, TimeStepping, TopCondition, preset};
+use drillsweep_scenario::{
+    Accuracy, BitLaw, Integrator, Scenario, TimeStepping, TopCondition, TopDrive, TopDriveKind, Tuning,
+    preset,
+};
 use serde_json::{Value, json};
 
 use super::step_loop::Run;
 use super::transient::Solved;
 use super::{Checkpoint, Outcome, Transient};
 use crate::control::Control;
-use crate::force::nodal::{At, Dependence, NodalForce, NodeCompliance, NodeMotion, Place};
+use crate::force::nodal::{At, Dependence, NodalForce};
 use crate::math::dof::{DOFS, THETA_Z, W};
 use crate::solve::model::Model;
-use crate::solve::modes::{ModeSearch, modes};
+use crate::solve::modes::{ModeSearch, ModesError, Pencil, Receptance, modes};
 use crate::solve::statics::Equilibrium;
 use crate::solve::step::EnergyRow;
-
-/// Velocity weakening of a bit torque: T = T_0 g(omega) / g(Omega), g = sgn_c(omega) (1 + exp(-|omega| / w)), with the factors of a published
-/// simulator (w = 7 rad/s, c = 0.1 rad/s).
-#[derive(Debug)]
-struct BitTorque {
-    bit: [usize; 1],
-    /// T_0 \[N m\] at the nominal speed.
-    torque: f64,
-    /// Nominal speed Omega \[rad/s\].
-    nominal: f64,
-}
-
-impl BitTorque {
-    /// g and its slope by omega.
-    fn law(omega: f64) -> (f64, f64) {
-        let y = (omega / 0.1).clamp(-1.0, 1.0);
-        let (sign, sign_slope) = (0.5 * y * (3.0 - y * y), 1.5 * (1.0 - y * y) / 0.1);
-        let decay = (-omega.abs() / 7.0).exp();
-        (sign * (1.0 + decay), sign_slope * (1.0 + decay) - sign * omega.signum() * decay / 7.0)
-    }
-
-    /// Torque on the bit and its slope by the rate of twist.
-    fn of_rate(&self, rate: f64) -> (f64, f64) {
-        let scale = -self.torque / Self::law(self.nominal).0;
-        let (law, slope) = Self::law(self.nominal + rate);
-        (scale * law, scale * slope)
-    }
-
-    fn rate(&self, at: &At<'_>) -> f64 {
-        (at.motion)(self.bit[0]).velocity[THETA_Z]
-    }
-}
-
-impl NodalForce for BitTorque {
-    fn nodes(&self) -> &[usize] {
-        &self.bit
-    }
-
-    fn dependence(&self) -> Dependence {
-        Dependence::Motion
-    }
-
-    fn entry(&self) -> Option<&'static str> {
-        Some("friction")
-    }
-
-    fn forces(&self, at: &At<'_>, out: &mut [[f64; DOFS]]) {
-        out[0][THETA_Z] = self.of_rate(self.rate(at)).0;
-    }
-
-    fn implicit_forces(&self, at: &At<'_>, compliance: &[NodeCompliance], out: &mut [[f64; DOFS]]) {
-        let NodeCompliance { displacement, speed } = compliance[0];
-        let response = speed * displacement[THETA_Z][THETA_Z];
-        let without = self.rate(at) - response * out[0][THETA_Z];
-        let mut rate = self.rate(at);
-        for _ in 0..30 {
-            let (torque, slope) = self.of_rate(rate);
-            rate -= (rate - without - response * torque) / (1.0 - response * slope);
-        }
-        out[0][THETA_Z] = self.of_rate(rate).0;
-    }
-
-    fn tangent(&self, at: &At<'_>, add: &mut dyn FnMut([Place; 2], [f64; 2])) {
-        let twist = (self.bit[0], THETA_Z);
-        add([twist; 2], [0.0, -self.of_rate(self.rate(at)).1]);
-    }
-
-    fn sensitivity(&self, at: &At<'_>, change: &dyn Fn(usize) -> NodeMotion) -> f64 {
-        let slope = self.of_rate(self.rate(at)).1 / self.torque;
-        (slope * change(self.bit[0]).velocity[THETA_Z]).abs()
-    }
-}
 
 /// 850 m of drillpipe and 150 m of collars, vertical, without wall or mud, in 17 and 6 elements.
 fn string(integrator: Integrator, step: f64, duration: f64) -> Scenario {
@@ -132,9 +63,23 @@ fn with_force(scenario: &Scenario, force: impl NodalForce + 'static) -> Model {
     model
 }
 
-fn with_bit_torque(scenario: &Scenario) -> Model {
-    let bit = Model::new(scenario).unwrap().node_count() - 1;
-    with_force(scenario, BitTorque { bit: [bit], torque: 5000.0, nominal: 4.0 * std::f64::consts::PI })
+/// The same with 5 kN m on bit at 120 rpm, which fall with the speed of the bit.
+fn with_bit_torque(mut scenario: Scenario) -> Scenario {
+    scenario.operation.torque_on_bit = -5000.0;
+    scenario.bit.law = BitLaw::VelocityWeakening;
+    scenario
+}
+
+/// The same with a soft top drive of a gain, 0.9 of its inertia compensated.
+fn with_soft_drive(mut scenario: Scenario, gain: f64, inertia_compensation: f64) -> Scenario {
+    scenario.top_drive = TopDrive {
+        kind: TopDriveKind::SpeedControl,
+        tuning: Tuning::Soft,
+        gain,
+        inertia_compensation,
+        ..TopDrive::default()
+    };
+    scenario
 }
 
 /// The run of a string whose torsion and axial motion are solved for.
@@ -150,9 +95,9 @@ fn a_bit_torque_turns_the_string_as_an_independent_program_has_it() {
     // Bit speed 0.1 rad/s above 120 rpm at the start: its values at 1, 2 and 5 s, by RK4 on an axial-torsional string of the same mesh.
     let wanted = [(1.0, 12.55612), (2.0, 12.58336), (5.0, 12.51439)];
     for (integrator, step) in
-        [(Integrator::Esdirk4, 2e-3), (Integrator::GeneralizedAlpha, 5e-4), (Integrator::Rk4, 5e-4)]
+        [(Integrator::Esdirk4, 2e-3), (Integrator::GeneralizedAlpha, 5e-4), (Integrator::Rk4, 6.25e-5)]
     {
-        let model = with_bit_torque(&string(integrator, step, 6.0));
+        let model = Model::new(&with_bit_torque(string(integrator, step, 6.0))).unwrap();
         let equilibrium = Equilibrium::find(&model).unwrap();
         // The equilibrium carries the torque at the nominal speed.
         assert!((equilibrium.torque[0] + 5000.0).abs() < 1e-6, "{}", equilibrium.torque[0]);
@@ -172,17 +117,20 @@ fn a_bit_torque_turns_the_string_as_an_independent_program_has_it() {
                 "{integrator:?}, {time} s: {omega} against {wanted}"
             );
         }
-        let last = records.energy.last().unwrap();
-        assert!(last.residual.abs() < 0.01 * last.turned_over(), "{integrator:?}: {last:?}");
+        assert!(imbalance(&records.energy) < 0.01, "{integrator:?}: {}", imbalance(&records.energy));
     }
+}
+
+/// What a run's ledger misses of the energy turned over, without the energy of a speed that it began with.
+fn imbalance(energy: &[EnergyRow]) -> f64 {
+    let [first, last] = [energy.first(), energy.last()].map(Option::unwrap);
+    (last.residual - first.residual).abs() / last.turned_over()
 }
 
 #[test]
 fn modes_grow_by_the_slope_of_a_bit_torque() {
-    let model = with_bit_torque(&string(Integrator::Esdirk4, 2e-3, 1.0));
+    let model = Model::new(&with_bit_torque(string(Integrator::Esdirk4, 2e-3, 1.0))).unwrap();
     let equilibrium = Equilibrium::find(&model).unwrap();
-    let slope = BitTorque { bit: [0], torque: 5000.0, nominal: model.rotation_speed }.of_rate(0.0).1;
-    assert!((slope - 101.741).abs() < 1e-3, "{slope}");
     let found = modes(&model, &equilibrium, &ModeSearch { to_hz: 2.5, ..ModeSearch::default() }).unwrap();
     let mut growing: Vec<(f64, f64)> = found
         .modes
@@ -297,14 +245,17 @@ fn unknowns_of_forces_converge_at_the_order_of_the_method() {
 #[test]
 fn forces_at_nodes_go_on_from_a_checkpoint_to_the_same_bits() {
     for (integrator, step) in
-        [(Integrator::Esdirk4, 1e-2), (Integrator::GeneralizedAlpha, 5e-3), (Integrator::Rk4, 5e-4)]
+        [(Integrator::Esdirk4, 1e-2), (Integrator::GeneralizedAlpha, 5e-3), (Integrator::Rk4, 6.25e-5)]
     {
         // With two iterations, the start of a step shows in its end.
         let accuracy = Accuracy::Explicit(TimeStepping::fixed(integrator, step));
         let scenario = Scenario { accuracy, ..string(integrator, step, 1.0) };
         let mut part = scenario.clone();
         (part.operation.top, part.operation.length_above) = (TopCondition::Continues, Some(40.0));
-        for model in [with_lag(&scenario), with_bit_torque(&scenario), Model::new(&part).unwrap()] {
+        let shaken = with_soft_drive(with_bit_torque(scenario.clone()), 4.0, 0.9)
+            .with("excitation", json!([{ "above_bit": 300.0, "direction": "axial", "force": 1e4, "frequency_hz": 0.0, "band_to_hz": 9.0 }]));
+        let models = [shaken.unwrap(), part].map(|scenario| Model::new(&scenario).unwrap());
+        for model in models.into_iter().chain([with_lag(&scenario)]) {
             let equilibrium = Equilibrium::find(&model).unwrap();
             let started = || {
                 let mut run = run(&model, &equilibrium);
@@ -412,4 +363,209 @@ fn a_part_of_a_string_below_a_uniform_pipe_moves_as_in_the_whole() {
     }
     let fine = apart(Integrator::Esdirk4, 2e-3, 2.5);
     assert!(fine < 0.016, "{fine}");
+}
+
+/// Speeds of the bit \[rad/s\], a hundred a second, after its speed was changed at the start.
+fn bit_speeds(scenario: &Scenario, change: f64) -> Vec<f64> {
+    let model = Model::new(scenario).unwrap();
+    let mut run = run(&model, &Equilibrium::find(&model).unwrap());
+    run.kick((model.node_count() - 1, THETA_Z), change);
+    rates(run, &Control::new()).0.into_iter().map(|rate| model.rotation_speed + rate).collect()
+}
+
+#[test]
+fn a_bit_under_an_imposed_speed_sticks_and_slips_as_an_independent_program_has_it() {
+    let speeds = bit_speeds(&with_bit_torque(string(Integrator::Esdirk4, 2e-3, 40.0)), 0.1);
+    // RK4 on an axial-torsional string of the same mesh: 20 to 40 s, and the first stick.
+    let settled = &speeds[2000..];
+    let fastest = settled.iter().copied().fold(0.0, f64::max);
+    assert!((fastest / 31.49 - 1.0).abs() < 5e-3, "{fastest}");
+    let stuck = settled.iter().filter(|speed| **speed < 0.3).count() as f64 / settled.len() as f64;
+    assert!((stuck - 0.298).abs() < 0.01, "{stuck}");
+    let first = speeds.iter().position(|speed| *speed < 0.3).unwrap() as f64 / 100.0;
+    assert!((first - 15.99).abs() < 0.05, "{first} s");
+    // Times at which the bit passes the nominal speed upwards.
+    let nominal = 4.0 * std::f64::consts::PI;
+    let rising: Vec<f64> = (1..settled.len())
+        .filter(|&i| settled[i - 1] < nominal && settled[i] >= nominal)
+        .map(|i| i as f64 - (settled[i] - nominal) / (settled[i] - settled[i - 1]))
+        .collect();
+    let period = 0.01 * (rising[rising.len() - 1] - rising[0]) / (rising.len() - 1) as f64;
+    assert!((period / 1.9717 - 1.0).abs() < 5e-3, "{period} s");
+}
+
+#[test]
+fn a_soft_drive_takes_stick_slip_away() {
+    let scenario = with_soft_drive(with_bit_torque(string(Integrator::Esdirk4, 2e-3, 40.0)), 4.0, 0.9);
+    let speeds = bit_speeds(&scenario, -8.0);
+    let nominal = 4.0 * std::f64::consts::PI;
+    for (time, wanted) in [(1, 13.2243), (2, 11.9336), (5, 12.9183)] {
+        let speed = speeds[100 * time];
+        assert!((speed - wanted).abs() < 5e-3 * (wanted - nominal).abs().max(0.5), "{time} s: {speed}");
+    }
+    let (least, most) = speeds[2000..]
+        .iter()
+        .fold((f64::MAX, 0.0_f64), |(least, most), speed| (least.min(*speed), most.max(*speed)));
+    assert!(least > 12.5 && most < 12.64, "{least} to {most}");
+}
+
+#[test]
+fn a_drive_decides_from_which_speed_torsion_decays() {
+    let nominal = 120.0;
+    let shape = |rpm: f64| 1.0 + (-rpm * std::f64::consts::PI / 30.0 / 7.0).exp();
+    let largest_growth = |drive: Option<(f64, f64)>, rpm: f64| {
+        let mut scenario = with_bit_torque(string(Integrator::Esdirk4, 2e-3, 1.0));
+        if let Some((gain, compensation)) = drive {
+            scenario = with_soft_drive(scenario, gain, compensation);
+        }
+        // The torque of one bit and rock: 5 kN m at 120 rpm.
+        scenario.operation.torque_on_bit *= shape(rpm) / shape(nominal);
+        scenario.operation.rotation_speed_rpm = rpm;
+        let model = Model::new(&scenario).unwrap();
+        let equilibrium = Equilibrium::find(&model).unwrap();
+        let found = modes(&model, &equilibrium, &ModeSearch { to_hz: 2.5, ..ModeSearch::default() }).unwrap();
+        found.modes.iter().map(|mode| mode.growth_rate).fold(f64::MIN, f64::max)
+    };
+    // Of the exact string: imposed, gain 1, gain 1 and gain 4 with 0.9 of the inertia compensated.
+    for (drive, critical) in
+        [(None, 334.1), (Some((1.0, 0.0)), 256.6), (Some((1.0, 0.9)), 146.4), (Some((4.0, 0.9)), 107.4)]
+    {
+        let [below, above] = [0.995, 1.005].map(|part| largest_growth(drive, part * critical));
+        assert!(below > 0.0 && above < 0.0, "{drive:?} at {critical} rpm: {below} and {above} 1/s");
+    }
+}
+
+#[test]
+fn a_drive_of_one_impedance_without_inertia_is_a_top_that_continues() {
+    let base = || with_bit_torque(string(Integrator::Esdirk4, 2e-3, 2.0));
+    let mut open = base();
+    open.operation.top = TopCondition::Continues;
+    let [open, driven] = [open, with_soft_drive(base(), 1.0, 1.0)].map(|scenario| bit_speeds(&scenario, 1.0));
+    let apart = open.iter().zip(&driven).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    // One is implicit in contact iterations, the other in the matrix.
+    assert!(apart < 1e-7, "{apart} rad/s");
+    assert!(open.iter().any(|speed| (speed - open[0]).abs() > 0.5));
+}
+
+#[test]
+fn ledger_of_bit_drive_and_excitation_closes() {
+    let forces = json!([
+        { "above_bit": 0.0, "direction": "torsional", "torque": 800.0, "frequency_hz": 0.5 },
+        { "measured_depth": 500.0, "direction": "axial", "force": 2e4, "frequency_hz": 0.0, "band_to_hz": 8.0, "seed": 3 },
+    ]);
+    for (integrator, step) in
+        [(Integrator::Esdirk4, 2e-3), (Integrator::GeneralizedAlpha, 5e-4), (Integrator::Rk4, 6.25e-5)]
+    {
+        let scenario = with_soft_drive(with_bit_torque(string(integrator, step, 4.0)), 4.0, 0.9);
+        let model = Model::new(&scenario.with("excitation", forces.clone()).unwrap()).unwrap();
+        let mut run = run(&model, &Equilibrium::find(&model).unwrap());
+        run.kick((model.node_count() - 1, THETA_Z), -8.0);
+        let ended = run.run(&Control::new(), &mut |_| Ok(()));
+        let Outcome::Finished(records) = ended.unwrap() else { panic!("{integrator:?} was not finished") };
+        let last = records.energy.last().unwrap();
+        assert!(
+            imbalance(&records.energy) < 1e-3,
+            "{integrator:?}: {}, {last:?}",
+            imbalance(&records.energy)
+        );
+        assert!(last["work_drive"] < -1.0 && last["work_bit"].abs() > 1.0, "{last:?}");
+        assert!(last["work_excitation"].abs() > 1.0, "{last:?}");
+    }
+}
+
+#[test]
+fn a_string_moves_under_a_harmonic_force_as_its_linear_response_has_it() {
+    // The bit of a vertical string, damped by its material alone, after ten decay times of the slowest mode.
+    for (direction, amplitude, dof) in [("axial", "force", W), ("torsional", "torque", THETA_Z)] {
+        let mut scenario = string(Integrator::Esdirk4, 2e-3, 40.0);
+        scenario.damping.mass_proportional = 1.0;
+        let mut force =
+            json!({ "above_bit": 0.0, "direction": direction, "frequency_hz": 1.7, "phase_deg": 30.0 });
+        force[amplitude] = json!(1000.0);
+        let model = Model::new(&scenario.with("excitation", json!([force])).unwrap()).unwrap();
+        let equilibrium = Equilibrium::find(&model).unwrap();
+        let bit = model.node_count() - 1;
+        let expected = Receptance::of(&Pencil::about(&model, &equilibrium), 1.7).unwrap().of_node((bit, dof));
+        let expected = expected * 1000.0 * nalgebra::Complex::from_polar(1.0, 30_f64.to_radians());
+        let mut moved = Vec::new();
+        let ended = run(&model, &equilibrium).run(&Control::new(), &mut |block| {
+            let history = &block.histories[0];
+            moved.extend_from_slice(if dof == W { &history.w } else { &history.theta_z });
+            Ok(())
+        });
+        assert!(matches!(ended.unwrap(), Outcome::Finished(_)));
+        let at_rest = equilibrium.displacement[bit][dof];
+        for (sample, moved) in moved.iter().enumerate().skip(3000) {
+            let phase = nalgebra::Complex::from_polar(1.0, TAU * 1.7 * sample as f64 / 100.0);
+            let wanted = (expected * phase).re;
+            let off = (moved - at_rest - wanted).abs();
+            assert!(off < 1e-4 * expected.norm(), "{direction}, {sample}: {moved}, {wanted}");
+        }
+    }
+}
+
+#[test]
+fn z_torque_has_the_impedance_of_its_set_point() {
+    // A torque at the bit shakes the string; the ratio of the torque to the speed at the top is that of the control.
+    let frequency = 0.8;
+    let ratio = |integrator, step| {
+        let mut scenario = string(integrator, step, 40.0);
+        scenario.damping.mass_proportional = 1.0;
+        scenario.top_drive =
+            TopDrive { kind: TopDriveKind::ZTorque, inertia_compensation: 0.9, ..TopDrive::default() };
+        let force = json!([{ "above_bit": 0.0, "direction": "torsional", "torque": 1000.0, "frequency_hz": frequency }]);
+        let nodes = json!([{ "node": 1 }, { "node": 2 }]);
+        let scenario = scenario.with("excitation", force).unwrap().with("recording.nodes", nodes).unwrap();
+        let model = Model::new(&scenario).unwrap();
+        let equilibrium = Equilibrium::find(&model).unwrap();
+        let [mut speed, mut torque] = [(); 2].map(|()| nalgebra::Complex::new(0.0, 0.0));
+        let stiffness =
+            model.elements[0].beam.section().torsional_stiffness() / model.elements[0].beam.length();
+        let mut sample = 0;
+        let ended = run(&model, &equilibrium).run(&Control::new(), &mut |block| {
+            let [top, below] = [&block.histories[0], &block.histories[1]];
+            for i in 0..top.theta_z.len() {
+                // Whole periods at the end of the run.
+                if sample >= 3000 {
+                    let phase =
+                        nalgebra::Complex::from_polar(1.0, -TAU * frequency * f64::from(sample) / 100.0);
+                    speed += phase * top.theta_z_rate[i];
+                    torque += phase * (stiffness * (top.theta_z[i] - below.theta_z[i]));
+                }
+                sample += 1;
+            }
+            Ok(())
+        });
+        assert!(matches!(ended.unwrap(), Outcome::Finished(_)));
+        let control = model.speed_control.unwrap();
+        let s = nalgebra::Complex::new(0.0, TAU * frequency);
+        let (law, tau) = (control.damping + control.stiffness / s, 20.0 / TAU);
+        let filtered = s * tau / (1.0 + s * tau);
+        let impedance = model.elements[0].beam.section().torsional_impedance();
+        // The inertia between the middle of the first element and the top is part of that of the top.
+        let own = {
+            let section = model.elements[0].beam.section();
+            section.density * section.polar_moment() * model.elements[0].beam.length()
+        };
+        let wanted = -(s * (control.inertia + 0.5 * own) + law) / (1.0 + law * filtered / impedance);
+        (torque / speed, wanted)
+    };
+    for (integrator, step) in
+        [(Integrator::Esdirk4, 2e-3), (Integrator::GeneralizedAlpha, 1e-3), (Integrator::Rk4, 5e-4)]
+    {
+        let (found, wanted) = ratio(integrator, step);
+        assert!((found - wanted).norm() < 5e-3 * wanted.norm(), "{integrator:?}: {found}, {wanted}");
+        // Next to the impedance of the pipe, 302.6 N m s.
+        assert!((found.norm() / 302.57 - 1.0).abs() < 0.05, "{found}");
+    }
+}
+
+#[test]
+fn modes_of_a_drive_with_a_state_of_its_own_are_refused() {
+    let mut scenario = string(Integrator::Esdirk4, 2e-3, 1.0);
+    scenario.top_drive.kind = TopDriveKind::ZTorque;
+    let model = Model::new(&scenario).unwrap();
+    let equilibrium = Equilibrium::find(&model).unwrap();
+    let found = modes(&model, &equilibrium, &ModeSearch::default());
+    assert_eq!(found.unwrap_err(), ModesError::TorqueFilter);
 }

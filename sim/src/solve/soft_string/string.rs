@@ -83,7 +83,7 @@ impl SoftString {
                 .chain(sections.map(Some))
                 .map(|index| scenario.hole_of(index))
                 .collect(),
-            operation: scenario.operation,
+            operation: scenario.in_hole().operation,
         })
     }
 

@@ -15,11 +15,17 @@ use super::work::{WORKING, Work};
 use crate::force::contact::{ContactNode, ContactSegment, Wall};
 use crate::force::effect::{ACCOUNTS, Account, Booked, DAMPING, Side};
 use crate::force::list::ENTRIES;
+use crate::force::top_drive::{self, SpeedControl};
 use crate::force::wall::{self, contact, friction, friction_torque};
 use crate::math::dof::{Dofs, THETA_X, THETA_Y, U, V};
 use crate::math::linalg::{BlockTridiagonal, Four, Lane, NodalField};
 use crate::solve::model::{Model, NodalVector};
 use crate::solve::motion::DynamicSystem;
+
+/// Place of a work of forces among [`ENTRIES`].
+fn place_of_entry(work: &str) -> usize {
+    ENTRIES.iter().position(|entry| *entry == work).expect("works of forces are entries")
+}
 
 /// The accounts of damping.
 fn working() -> impl Iterator<Item = &'static Account> {
@@ -117,6 +123,8 @@ pub(crate) struct Ledger<const D: usize> {
     wall: Wall,
     /// Places of the wall's works among [`ENTRIES`]: normal forces, friction, rotation.
     of_wall: [usize; 3],
+    /// Control of the top, and the place of its work among [`ENTRIES`].
+    drive: Option<(SpeedControl, usize)>,
     freedoms: Dofs<D>,
     rotation_speed: f64,
     work: Work,
@@ -139,9 +147,8 @@ impl<const D: usize> Ledger<D> {
             load: system.load.clone(),
             forms: Forms::new(damping, &system.stiffness),
             wall: model.wall.clone(),
-            of_wall: [wall::NORMAL_WORK, wall::FRICTION_WORK, wall::ROTATION_WORK].map(|work| {
-                ENTRIES.iter().position(|entry| *entry == work).expect("the works of the wall are entries")
-            }),
+            of_wall: [wall::NORMAL_WORK, wall::FRICTION_WORK, wall::ROTATION_WORK].map(place_of_entry),
+            drive: model.speed_control.map(|control| (control, place_of_entry(top_drive::WORK.name))),
             freedoms: system.freedoms,
             rotation_speed: system.rotation_speed,
             work: Work::default(),
@@ -215,6 +222,9 @@ impl<const D: usize> Ledger<D> {
         powers[friction] = friction_power.sum();
         powers[rotation] = friction_torque::power_of_rotation(torque.sum(), self.rotation_speed);
         forces.points.each_power(&acting.points, velocity, |entry, power| powers[entry] += power);
+        if let (Some((control, entry)), Some(twist)) = (&self.drive, self.freedoms.twist()) {
+            powers[*entry] += control.power(velocity[(0, twist)]);
+        }
         Work { forces: powers, ..Work::default() }
     }
 
@@ -369,8 +379,8 @@ mod tests {
             _ => 1.0,
         });
         let row = EnergyRow { kinetic: 2.0, stored: -4.0, accounts, ..EnergyRow::default() };
-        // Unbalance, flow, structure, mud and waves at the top count one each.
-        assert_eq!(row.turned_over(), 2.0 + 4.0 + 5.0 + 3.0 + 10.0);
+        // Unbalance, flow, bit, excitation, drive, structure, mud and waves at the top count one each.
+        assert_eq!(row.turned_over(), 2.0 + 4.0 + 8.0 + 3.0 + 10.0);
         assert_eq!((row["dissipated_contact"], row["stored"]), (-3.0, -4.0));
     }
 }

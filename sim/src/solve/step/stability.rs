@@ -362,13 +362,22 @@ fn lateral_and_twist([u, v]: [f64; LATERAL], twist: f64) -> [f64; DOFS] {
 }
 
 /// The largest stable step of RK4 \[s\], from the highest frequency of the string with every contact closed and the highest c/m of
-/// `m x'' + c x' + k x = 0` by its damping and its contacts' dampers.
+/// `m x'' + c x' + k x = 0` by its damping and the dampers of contacts, bit and drive.
 pub(crate) fn rk4_limit(model: &Model, system: &DynamicSystem) -> Result<f64, SingularBlock> {
     let contact = &model.scenario.contact;
     let stiffness = |site: &ContactNode<f64>| contact.stiffness * site.stiffness_share;
     let frequency = largest_ratio(model, system, &system.stiffness, stiffness)?.sqrt();
     let damping = |site: &ContactNode<f64>| contact.unit_damping() * site.damping_share;
-    let decay = largest_ratio(model, system, system.damping_of(&structural_damping::DISSIPATED), damping)?;
+    let mut dampers = system.damping_of(&structural_damping::DISSIPATED).clone();
+    let of_drive = model.speed_control.map(|control| ((0, THETA_Z), control.damping));
+    for ((node, dof), damping) in
+        model.forces.iter().filter_map(|force| force.largest_damping()).chain(of_drive)
+    {
+        if !system.held[node][dof] {
+            dampers.diagonal[node][(dof, dof)] += damping;
+        }
+    }
+    let decay = largest_ratio(model, system, &dampers, damping)?;
     Ok(largest_stable_step(frequency, decay))
 }
 

@@ -59,3 +59,17 @@ fn a_sobol_sequence_is_not_drawn_beyond_its_end() {
         assert_eq!((found.len(), found[0].0.as_str()), (1, "/skip"), "{found:?}");
     }
 }
+
+/// Gauges, masses and recorded nodes of whole wells move with the bit.
+#[test]
+fn a_whole_well_is_swept_over_its_bit_depth() {
+    for (preset, depths) in [
+        ("wells/volve-f12", [1500.0, 2500.0, 3438.0]),
+        ("wells/vertical-2500m", [700.0, 1600.0, 2500.0]),
+        ("wells/extended-reach-5000m", [2500.0, 4000.0, 5000.0]),
+        ("wells/well-b-aarsnes", [800.0, 1500.0, 2500.0]),
+    ] {
+        let body = json!({"preset": preset, "axes": {"string.bit_depth": {"values": depths}}});
+        assert_eq!(refused(body), [], "{preset}");
+    }
+}

@@ -166,7 +166,12 @@ impl UnbalanceMass {
 }
 
 pub(crate) fn depth(measured_depth: Option<f64>, above_bit: Option<f64>, bit: f64) -> f64 {
-    measured_depth.or(above_bit.map(|above| bit - above)).unwrap_or(f64::NAN)
+    measured_depth.or(above_bit.map(|above| above_the(bit, above))).unwrap_or(f64::NAN)
+}
+
+/// Measured depth \[m\] at a distance above a bit, to a nanometre: lengths of sections add up to 3437.9999999999995 m, and a place must have one depth however it is written.
+fn above_the(bit: f64, above: f64) -> f64 {
+    ((bit - above) * 1e9).round() / 1e9
 }
 
 impl NodeChoice {
@@ -175,7 +180,7 @@ impl NodeChoice {
         match self {
             NodeChoice::Node(_) => None,
             NodeChoice::Depth(depth) => Some(depth),
-            NodeChoice::AboveBit(above) => Some(bit - above),
+            NodeChoice::AboveBit(above) => Some(above_the(bit, above)),
         }
     }
 

@@ -2,7 +2,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use drillsweep_scenario::{Scenario, Section, SectionKind, SurveyStation, ToolJoint, TopCondition, preset};
+use drillsweep_scenario::{
+    NodeChoice, Scenario, Section, SectionKind, SurveyStation, ToolJoint, TopCondition, preset,
+};
 use drillsweep_sim::key::canonical_json;
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::soft_string::{DragCase, DragMode, DragSettings, SoftString};
@@ -269,6 +271,38 @@ fn places_above_the_bit_are_those_of_their_depths() {
     };
     for (moved, found) in bit_to_lowest(&moved).iter().zip(bit_to_lowest(&found)) {
         assert!((moved - found).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn whole_wells_are_the_same_by_distances_from_the_bit_and_by_depths() {
+    for name in ["volve-f12", "vertical-2500m", "extended-reach-5000m", "well-b-aarsnes"] {
+        let mut by_height = preset(&format!("wells/{name}")).expect("shipped preset");
+        let bit = by_height.string.whole_length().round();
+        let mut by_depth = by_height.clone();
+        let to_depth = |above_bit: &mut Option<f64>, measured_depth: &mut Option<f64>| {
+            // As a table of depths has them, to the millimetre.
+            *measured_depth =
+                Some((1e3 * (bit - above_bit.take().expect("moves with the bit"))).round() / 1e3);
+        };
+        for gauge in &mut by_depth.string.gauges {
+            to_depth(&mut gauge.above_bit, &mut gauge.measured_depth);
+        }
+        for mass in &mut by_depth.string.unbalance {
+            to_depth(&mut mass.above_bit, &mut mass.measured_depth);
+        }
+        let [found, expected] =
+            [&by_height, &by_depth].map(|scenario| Model::new(scenario).expect("valid").mesh);
+        assert_eq!(found.nodes, expected.nodes, "{name}");
+        for choice in &by_height.recording.nodes {
+            let NodeChoice::AboveBit(above) = *choice else { continue };
+            let depth = NodeChoice::Depth((1e3 * (bit - above)).round() / 1e3);
+            assert_eq!(found.chosen_node(*choice), found.chosen_node(depth), "{name}, {above} m");
+        }
+        // Columns of recorded nodes have other names, and the result another key.
+        by_height.recording.nodes.clear();
+        by_depth.recording.nodes.clear();
+        assert_eq!(canonical_json(&by_height), canonical_json(&by_depth), "{name}");
     }
 }
 

@@ -59,5 +59,7 @@ pub use sweep::{
 };
 pub use verify::{promise_of_scenario, sample};
 
-pub use drillsweep_scenario::{FailureClass, PointError, ScenarioRequest, compose, read_strictly};
+pub use drillsweep_scenario::{
+    DrillString, FailureClass, PointError, Scenario, ScenarioRequest, compose, read_strictly,
+};
 pub use drillsweep_sim::PHYSICS_VERSION;

@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn history_of_a_twisting_string_shows_rotation_speed_and_torque_of_the_bit() {
-        let places = [Place { node: 49, measured_depth: 200.0, low_side: None }];
+        let places = [Place { name: "49".to_owned(), measured_depth: 200.0, ..Place::default() }];
         let picture =
             |table: &Table| history(table, None, &places, None, "", &UnitChoice::default()).unwrap();
         let still = picture(&twisting(0.0, -1e3));

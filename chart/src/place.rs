@@ -6,34 +6,38 @@ use drillsweep_quantity::{Name, Quantity, UnitChoice};
 use crate::words::words;
 
 /// Position of a node, for the notes on its columns.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Place {
-    /// Number of the node, 1 at the top.
-    pub node: u32,
+    /// The place in names of columns: `49`, `57_7m`, `12_5m_above_bit`.
+    pub name: String,
     /// Measured depth \[m\].
     pub measured_depth: f64,
     /// Angle of the low side, from u towards v \[rad\]; none if the hole is vertical.
     pub low_side: Option<f64>,
+    /// Name of the component; empty if its section has none.
+    pub component: String,
 }
 
-/// Description of a column; of a node that is among the `places`, with its position and its direction of motion.
+/// Description of a column; of a node that is among the `places`, with its position, its component and its direction of motion.
 pub(crate) fn at_place(name: &str, places: &[Place], choice: &UnitChoice) -> String {
     let Some((parsed, of_name)) = Name::parse(name).and_then(|name| Some((name, name.place?))) else {
         return words(name);
     };
     let elsewhere = Name { place: None, window: None, ..parsed };
     let window = parsed.window.map(|window| format!(", window {window}")).unwrap_or_default();
+    let known = places.iter().find(|place| place.name == of_name.in_names());
+    let component = known.map_or("", |place| &place.component);
+    let component = if component.is_empty() { String::new() } else { format!(", {component}") };
     if let Some(height) = of_name.height() {
-        let unit = choice.depth();
-        return format!("{elsewhere} {} {} above the bit{window}", grouped(unit.of(height)), unit.symbol);
+        let height = grouped(choice.depth().of(height));
+        return format!("{elsewhere} {height} {} above the bit{component}{window}", choice.depth().symbol);
     }
-    let known = places.iter().find(|place| Some(place.node as usize) == of_name.node());
     let Some(depth) = of_name.depth().or(known.map(|place| place.measured_depth)) else {
         return words(name);
     };
     let depth = at_depth(depth, choice);
     let direction = known.map(|place| direction(parsed.quantity, place.low_side)).unwrap_or_default();
-    format!("{elsewhere} at {depth}{direction}{window}")
+    format!("{elsewhere} at {depth}{component}{direction}{window}")
 }
 
 /// Sign of a lateral displacement or speed, seen down the hole: u points to e1 and v to e2 (docs/model/well.md), and with
@@ -85,7 +89,9 @@ mod tests {
 
     #[test]
     fn legends_show_the_place_of_a_node_and_its_direction() {
-        let place = |low_side: Option<f64>| [Place { node: 10, measured_depth: 3412.3, low_side }];
+        let place = |low_side: Option<f64>| {
+            [Place { name: "10".to_owned(), measured_depth: 3412.3, low_side, ..Place::default() }]
+        };
         let label = |name, low_side: Option<f64>| {
             at_place(name, &place(low_side.map(f64::to_radians)), &UnitChoice::default())
         };
@@ -113,6 +119,17 @@ mod tests {
         }
         let field = UnitChoice::parse("field").unwrap();
         assert_eq!(at_place("u_10", &place(None), &field), "u at 11 195 ft MD, lateral, along e1");
+        let [mut of_node, mut of_height] = [place(Some(0.0)), place(None)].map(|[place]| place);
+        of_node.component = "MWD".to_owned();
+        (of_height.name, of_height.component) = ("8_2m_above_bit".to_owned(), "6.75 in collar".to_owned());
+        let places = [of_node, of_height];
+        for (name, words) in [
+            ("u_10", "u at 3 412 m MD, MWD, lateral, to the low side"),
+            ("orbit_radius_rms_8_2m_above_bit", "lateral vibration 8.2 m above the bit, 6.75 in collar"),
+            ("line_amplitude_10_w2", "amplitude of the highest line at 3 412 m MD, MWD, window 2"),
+        ] {
+            assert_eq!(at_place(name, &places, &UnitChoice::default()), words);
+        }
         assert_eq!([57.73, 999.97, 12_003.0].map(grouped), ["57.7", "1 000", "12 003"]);
     }
 }

@@ -92,13 +92,15 @@ pub(crate) fn axis(table: &Table, name: &str, choice: &UnitChoice) -> Result<Vec
     Ok(values.into_iter().map(|value| unit.map_or(value, |unit| unit.of(value))).collect())
 }
 
-/// The node that a table is of, with its depth.
+/// The node that a table is of, with its component and its depth.
 pub(crate) fn node_of(table: &Table, choice: &UnitChoice) -> String {
     let attribute = |name: &str| table.attributes.get(name).and_then(Value::as_f64);
     match (attribute(NODE.name), attribute(MEASURED_DEPTH.name)) {
         (Some(node), Some(depth)) => {
             let unit = choice.depth();
-            format!("node {node} at {:.2} {}", unit.of(depth), unit.symbol)
+            let component = table.attributes.get(COMPONENT.name).and_then(Value::as_str);
+            let component = component.map_or_else(String::new, |name| format!("{name}, "));
+            format!("{component}node {node} at {:.2} {}", unit.of(depth), unit.symbol)
         }
         _ => String::new(),
     }

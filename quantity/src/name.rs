@@ -63,6 +63,14 @@ impl<'n> Place<'n> {
         }
     }
 
+    /// The place as names of columns have it: `49`, `57_7m`, `12_5m_above_bit`.
+    pub fn in_names(self) -> String {
+        match self {
+            Place::Node(node) => node.to_string(),
+            Place::Depth(text) | Place::AboveBit(text) => text.to_owned(),
+        }
+    }
+
     /// Depth \[m\] as names of columns have it: `57_7m` for 57.7 m.
     pub fn of_depth(depth: f64) -> String {
         // Rounding may have left the top at -0.

@@ -7,11 +7,11 @@ use drillsweep_api::view::node::{self, Choice, Recorded};
 use drillsweep_api::view::orbit::Motion;
 use drillsweep_api::view::spectrum::{FullSpectrum, KeptWindow, Weighting};
 use drillsweep_api::view::window;
-use drillsweep_api::{PointState, ProblemDetails, ProblemKind};
+use drillsweep_api::{DrillString, PointState, ProblemDetails, ProblemKind};
 use drillsweep_chart::{Hole, Place};
 use drillsweep_quantity::columns::*;
 use drillsweep_quantity::{Name, Quantity};
-use drillsweep_store::{Artifact, BlobId, Store, WorkKey};
+use drillsweep_store::{Artifact, BlobId, PointRecord, Store, WorkKey};
 use drillsweep_table::parquet::StoredTable;
 use drillsweep_table::{Column, Table, tables};
 
@@ -56,11 +56,15 @@ pub(crate) async fn find(store: &Store, key: &WorkKey, name: &str) -> Result<Art
 
 /// Key of a point that has a result, even while it is being recomputed.
 pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<WorkKey> {
+    Ok(with_result(store, sweep, n).await?.work_key)
+}
+
+async fn with_result(store: &Store, sweep: &str, n: u32) -> Result<PointRecord> {
     let Some(point) = store.point(sweep, n.into()).await? else {
         return Err(records::no_such_point(store, sweep, n).await?);
     };
     if point.summary_json.is_some() {
-        return Ok(point.work_key);
+        return Ok(point);
     }
     let state = records::point_state(point.state);
     let detail = match state {
@@ -76,12 +80,15 @@ pub(crate) async fn result_key(store: &Store, sweep: &str, n: u32) -> Result<Wor
 pub(crate) struct Recording {
     pub(crate) history: Stored,
     pub(crate) statics: Stored,
+    /// The string, for the names of its components.
+    pub(crate) string: DrillString,
 }
 
 /// Full spectra that were kept in place of histories, with the depths of their nodes.
 pub(crate) struct KeptSpectra {
     spectra: Stored,
     statics: Stored,
+    string: DrillString,
 }
 
 /// Source of the full spectra of a run.
@@ -96,6 +103,7 @@ pub(crate) enum SpectrumSource {
 pub(crate) struct NodeSpectrum {
     pub(crate) node: u32,
     measured_depth: f64,
+    component: String,
     pub(crate) spectrum: FullSpectrum,
 }
 
@@ -111,6 +119,8 @@ pub(crate) struct Samples {
 pub(crate) struct NodeMotion {
     pub(crate) node: u32,
     pub(crate) measured_depth: f64,
+    /// Name of its component; empty if its section has none.
+    component: String,
     /// End of the history \[s\], if the requested window ends later.
     pub(crate) cut_at: Option<f64>,
     time: Vec<f64>,
@@ -121,21 +131,23 @@ pub(crate) struct NodeMotion {
 impl SpectrumSource {
     /// Source of a point with a result: its histories, or its spectra if it kept none.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
-        let key = result_key(store, sweep, n).await?;
-        let artifacts = store.artifacts(&key).await?;
+        let point = with_result(store, sweep, n).await?;
+        let key = &point.work_key;
+        let artifacts = store.artifacts(key).await?;
         if !artifacts.iter().any(|artifact| artifact.name == tables::SPECTRA.name) {
-            return Ok(SpectrumSource::Recording(Recording::load_of(store, &key).await?));
+            return Ok(SpectrumSource::Recording(Recording::load_of(store, &point).await?));
         }
-        let spectra = stored_of(store, &key, tables::SPECTRA.name).await?;
-        let statics = stored_of(store, &key, tables::STATICS.name).await?;
-        Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics }))
+        let spectra = stored_of(store, key, tables::SPECTRA.name).await?;
+        let statics = stored_of(store, key, tables::STATICS.name).await?;
+        let string = records::scenario(&point)?.string;
+        Ok(SpectrumSource::Kept(KeptSpectra { spectra, statics, string }))
     }
 
     /// Names of all blobs that a spectrum depends on.
     pub(crate) fn blobs(&self) -> [BlobId; 2] {
         match self {
             SpectrumSource::Recording(recording) => recording.blobs(),
-            SpectrumSource::Kept(KeptSpectra { spectra, statics }) => [spectra.blob(), statics.blob()],
+            SpectrumSource::Kept(KeptSpectra { spectra, statics, .. }) => [spectra.blob(), statics.blob()],
         }
     }
 
@@ -203,14 +215,15 @@ impl KeptSpectra {
             resolution_hz.ok_or_else(|| Error::internal("a spectrum without positive frequencies"))?;
         let spectrum =
             FullSpectrum { resolution_hz, window: weighting, frequency_hz, amplitude: take(amplitude) };
-        Ok(NodeSpectrum { node, measured_depth, spectrum })
+        let component = self.string.component_at(measured_depth).to_owned();
+        Ok(NodeSpectrum { node, measured_depth, component, spectrum })
     }
 }
 
 impl NodeSpectrum {
     /// Adds the node of this spectrum to a view.
     pub(crate) fn label(&self, table: Table) -> Table {
-        of_node(table, self.node, self.measured_depth)
+        of_node(table, self.node, self.measured_depth, &self.component)
     }
 }
 
@@ -220,13 +233,13 @@ const OF_MOTION: u64 = 3;
 impl Recording {
     /// The recording of a point that has a result.
     pub(crate) async fn load(store: &Store, sweep: &str, n: u32) -> Result<Self> {
-        Self::load_of(store, &result_key(store, sweep, n).await?).await
+        Self::load_of(store, &with_result(store, sweep, n).await?).await
     }
 
-    async fn load_of(store: &Store, key: &WorkKey) -> Result<Self> {
-        let history = stored_of(store, key, tables::HISTORY.name).await?;
-        let statics = stored_of(store, key, tables::STATICS.name).await?;
-        Ok(Recording { history, statics })
+    async fn load_of(store: &Store, point: &PointRecord) -> Result<Self> {
+        let history = stored_of(store, &point.work_key, tables::HISTORY.name).await?;
+        let statics = stored_of(store, &point.work_key, tables::STATICS.name).await?;
+        Ok(Recording { history, statics, string: records::scenario(point)?.string })
     }
 
     /// Names of all blobs that an orbit depends on.
@@ -257,7 +270,7 @@ impl Recording {
         };
         layout.columns.retain(|name, _| is_wanted(name));
         layout.units.retain(|name, _| is_wanted(name));
-        Ok(of_node(layout, node, measured_depth))
+        Ok(of_node(layout, node, measured_depth, self.string.component_at(measured_depth)))
     }
 
     /// Samples of a half-open window \[from, to) \[s\] of the history; an absent end is open. A window that begins before the history, or
@@ -304,6 +317,7 @@ impl Recording {
         Ok(NodeMotion {
             node,
             measured_depth,
+            component: self.string.component_at(measured_depth).to_owned(),
             cut_at,
             time: take(&mut table, TIME.name)?,
             u: take(&mut table, &u)?,
@@ -363,20 +377,40 @@ impl Recording {
         nodes_among(&self.statics, node::with_columns(layout.columns.keys().map(String::as_str)))
     }
 
-    /// Depths of the nodes with columns in the history.
+    /// Places of the nodes with columns in the history.
     pub(crate) fn places(&self, layout: &Table) -> Result<Vec<Place>> {
         let place = |recorded: Recorded| {
             let Recorded { node, measured_depth, .. } = recorded;
-            Ok(Place { node, measured_depth, low_side: self.hole_at(node)?.low_side })
+            Ok(Place {
+                name: node.to_string(),
+                measured_depth,
+                low_side: self.hole_at(node)?.low_side,
+                component: self.string.component_at(measured_depth).to_owned(),
+            })
         };
         self.nodes_with_columns(layout)?.into_iter().map(place).collect()
     }
 }
 
-/// Places of nodes from the equilibrium of a point. Blocks.
-pub(crate) fn depths(statics: &Stored, nodes: &[u32]) -> Result<Vec<Place>> {
-    let place = |Recorded { node, measured_depth, .. }| Place { node, measured_depth, low_side: None };
-    Ok(nodes_among(statics, nodes.iter().copied())?.into_iter().map(place).collect())
+/// Places of columns on the string of a point, from its equilibrium. Blocks.
+pub(crate) fn places_of_columns(
+    statics: &Stored,
+    string: &DrillString,
+    columns: &[String],
+) -> Result<Vec<Place>> {
+    let named: Vec<_> = columns.iter().filter_map(|column| Name::parse(column)?.place).collect();
+    let numbers = named.iter().filter_map(|place| u32::try_from(place.node()?).ok());
+    let nodes = nodes_among(statics, numbers)?;
+    let of_number = |number: usize| {
+        nodes.iter().find(|found| found.node as usize == number).map(|found| found.measured_depth)
+    };
+    let place = |named: &drillsweep_quantity::Place<'_>| {
+        let below_top = named.height().map(|height| string.depth_of_bit() - height);
+        let measured_depth = named.depth().or(below_top).or_else(|| of_number(named.node()?))?;
+        let component = string.component_at(measured_depth).to_owned();
+        Some(Place { name: named.in_names(), measured_depth, low_side: None, component })
+    };
+    Ok(named.iter().filter_map(place).collect())
 }
 
 /// The numbers of a column of a history.
@@ -387,9 +421,10 @@ fn take(table: &mut Table, name: &str) -> Result<Vec<f64>> {
     }
 }
 
-/// Adds a node to a view.
-fn of_node(table: Table, node: u32, measured_depth: f64) -> Table {
-    table.attribute(NODE.name, node).attribute(MEASURED_DEPTH.name, measured_depth)
+/// Adds a node to a view, with its component if that has a name.
+fn of_node(table: Table, node: u32, measured_depth: f64, component: &str) -> Table {
+    let table = table.attribute(NODE.name, node).attribute(MEASURED_DEPTH.name, measured_depth);
+    if component.is_empty() { table } else { table.attribute(COMPONENT.name, component) }
 }
 
 /// Nodes by their numbers, from the table of the equilibrium, which has all nodes of the mesh.
@@ -415,7 +450,7 @@ impl NodeMotion {
 
     /// Adds to a view the node of this motion, and the end of the history if the window is cut there.
     pub(crate) fn label(&self, table: Table) -> Table {
-        mark_cut(of_node(table, self.node, self.measured_depth), self.cut_at)
+        mark_cut(of_node(table, self.node, self.measured_depth, &self.component), self.cut_at)
     }
 }
 

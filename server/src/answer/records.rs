@@ -4,8 +4,8 @@ use drillsweep_api::view::points::PointSummary;
 use drillsweep_api::view::verification::VerifiedPoint;
 use drillsweep_api::{
     ErrorPlace, Expansion, Failure, FailureClass, PointCounts, PointDetail, PointError, PointLinks, PointRow,
-    PointState, ProblemKind, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState, SweepVerification,
-    compose, key_text,
+    PointState, ProblemKind, Scenario, Sweep, SweepLinks, SweepPoint, SweepRequest, SweepState,
+    SweepVerification, compose, key_text,
 };
 use drillsweep_store::{
     CachePolicy, FailureRecord, NewPoint, NewSweep, NewVerification, PointRecord, ScenarioText, Stage,
@@ -148,10 +148,7 @@ pub(crate) fn failure(record: &FailureRecord) -> Result<Failure> {
 
 /// A point without its tables.
 pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String>) -> Result<PointDetail> {
-    let Some(ScenarioText { base_json, changes_json }) = &record.scenario else {
-        return Err(Error::internal("a point was read without its scenario"));
-    };
-    let scenario = compose(base_json, changes_json).map_err(|problem| Error::internal(&problem))?;
+    let scenario = scenario(record)?;
     let row = point_row(sweep, record)?;
     let node = row.error.as_ref().and_then(|error| error.node);
     Ok(PointDetail {
@@ -163,6 +160,14 @@ pub(crate) fn point_detail(sweep: &str, record: &PointRecord, tables: Vec<String
         provenance: record.provenance_json.as_deref().map(read).transpose()?,
         tables,
     })
+}
+
+/// Scenario of a point.
+pub(crate) fn scenario(record: &PointRecord) -> Result<Scenario> {
+    let Some(ScenarioText { base_json, changes_json }) = &record.scenario else {
+        return Err(Error::internal("a point was read without its scenario"));
+    };
+    compose(base_json, changes_json).map_err(|problem| Error::internal(&problem))
 }
 
 /// Frequency up to which the steps of a point's run resolve vibrations \[Hz\]; `None` if the result does not state it.

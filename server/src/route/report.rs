@@ -228,7 +228,8 @@ impl Sources {
             if let (Some(history), Some(statics)) = (take(tables::HISTORY.name), take(tables::STATICS.name)) {
                 let snapshots = take(tables::SNAPSHOTS.name);
                 sources.snapshots = snapshots.map(|stored| Snapshots::new(stored, &statics)).transpose()?;
-                sources.recording = Some(Recording { history, statics });
+                let string = sources.data.point.scenario.string.clone();
+                sources.recording = Some(Recording { history, statics, string });
             }
         }
         Ok(sources)

@@ -351,7 +351,7 @@ impl HistoryQuery {
 /// node, of the first node in that below it \[N m\], negative if it opposes clockwise rotation. These two exist for the bit as well. A
 /// picture shows u and v; with torsion also rotation speed \[rpm\] and torque at the bit, from the history or else the snapshots, or, as
 /// its text then states, of the lowest recorded node. For a chosen node it shows the columns of that node, and with `fields` those alone.
-/// The legend gives depths and directions. A picture shows at most 2,000,000 values.
+/// The legend gives depths, names of components and directions. A picture shows at most 2,000,000 values.
 #[utoipa::path(
     get,
     path = "/v1/sweeps/{id}/points/{n}/history",
@@ -555,7 +555,7 @@ pub(crate) struct OrbitQuery {
 
 /// Path of a node across the hole
 ///
-/// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth` and
+/// Columns `time`, `u`, `v`, `radius` in the frame of the node; attributes `node`, `measured_depth`, `component`, if it has a name, and
 /// `samples`, the number of samples in the window.
 #[utoipa::path(
     get,

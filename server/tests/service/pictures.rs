@@ -81,6 +81,27 @@ async fn a_map_names_the_depth_of_a_node_of_one_mesh() {
 }
 
 #[tokio::test]
+async fn pictures_name_the_components_of_their_nodes() {
+    let bench = Bench::new().await;
+    let set = json!({"string.sections[1].name": "5 in drillpipe"});
+    let axes = json!({"flow_rate": {"values": [0.02, 0.03]}});
+    let id = bench.submit(json!({"preset": "paper-200m", "set": set, "axes": axes})).await;
+    bench.succeed().await;
+    bench.succeed().await;
+    for (query, words) in [
+        ("points/1/orbit?node=49", "5 in drillpipe, node 49 at 57.73 m, "),
+        ("points/1/spectrum?node=49&from=2&to=8", "5 in drillpipe, node 49 at 57.73 m"),
+        ("points/1/history?node=49&from=2&to=3", "u at 57.7 m MD, 5 in drillpipe, lateral"),
+        ("table?fields=orbit_radius_rms_49", ">lateral vibration at 57.7 m MD, 5 in drillpipe [mm]<"),
+    ] {
+        let svg = bench.get(&format!("/v1/sweeps/{id}/{query}&format=svg")).await;
+        assert!(svg.text().contains(words), "{words} in {}", svg.text());
+    }
+    let orbit = bench.get(&format!("/v1/sweeps/{id}/points/1/orbit?node=49")).await.json();
+    assert_eq!(orbit["attributes"]["component"], "5 in drillpipe");
+}
+
+#[tokio::test]
 async fn columns_can_be_chosen() {
     let (bench, path) = finished().await;
     let table = bench.get(&format!("{path}/table?fields=density_seen,ordinal")).await.json();

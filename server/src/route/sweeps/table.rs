@@ -7,7 +7,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use drillsweep_api::judgement::LimitChanges;
-use drillsweep_api::{ColumnList, Signs};
+use drillsweep_api::{ColumnList, DrillString, Signs};
 use drillsweep_quantity::columns::CLASS;
 use drillsweep_quantity::{Name, UnitChoice};
 use drillsweep_store::WorkState;
@@ -115,11 +115,11 @@ pub(crate) async fn table(
         Tag::of(&form, &("map", &id, sweep.version, &sweep.name, &fields, &limits, signs, spacing, &slice));
     let mut view = chart::SweepView { spacing: spacing.into(), slice, ..Default::default() };
     let (points, verified) = TablePoints::of(&app, &sweep).await?;
-    let nodes = match format.is_picture() {
-        true => nodes_of(fields.as_deref().unwrap_or_default()),
+    let fields_of_places: Vec<String> = match format.is_picture() {
+        true => fields.iter().flatten().filter(|name| has_place(name)).cloned().collect(),
         false => Vec::new(),
     };
-    let statics = match nodes.is_empty() {
+    let first = match fields_of_places.is_empty() {
         true => None,
         false => statics_of_first(&app, &id).await?,
     };
@@ -137,11 +137,12 @@ pub(crate) async fn table(
             }
         };
         let parameters: IndexSet<String> = points.parameters().map(str::to_owned).collect();
-        if let Some(statics) = statics
+        if let Some((statics, string)) = first
             && !parameters.iter().any(|name| moves_nodes(name))
         {
             // Without depths the picture is still useful.
-            view.places = recordings::depths(&statics, &nodes).unwrap_or_default();
+            view.places =
+                recordings::places_of_columns(&statics, &string, &fields_of_places).unwrap_or_default();
         }
         let mut table = signs.of_table(points.finish(Some(classes)));
         let findings = &verified.findings;
@@ -157,20 +158,19 @@ pub(crate) async fn table(
     .await
 }
 
-/// Nodes of columns with a node number.
-fn nodes_of(fields: &[String]) -> Vec<u32> {
-    let node = |name: &String| u32::try_from(Name::parse(name)?.place?.node()?).ok();
-    fields.iter().filter_map(node).collect()
+/// True of a column of one node.
+fn has_place(field: &str) -> bool {
+    Name::parse(field).is_some_and(|name| name.place.is_some())
 }
 
-/// Equilibrium of the first point that has a result, if it kept one.
-async fn statics_of_first(app: &App, id: &str) -> Result<Option<Stored>> {
+/// Equilibrium and string of the first point that has a result, if it kept one.
+async fn statics_of_first(app: &App, id: &str) -> Result<Option<(Stored, DrillString)>> {
     let first = app.store.points(id, &[WorkState::Done], 0, 1).await?;
-    let ordinal = first.first().and_then(|point| u32::try_from(point.ordinal).ok());
-    match ordinal {
-        Some(n) => recordings::stored_if_any(&app.store, id, n, tables::STATICS.name).await,
-        None => Ok(None),
-    }
+    let Some(n) = first.first().and_then(|point| u32::try_from(point.ordinal).ok()) else { return Ok(None) };
+    let statics = recordings::stored_if_any(&app.store, id, n, tables::STATICS.name).await?;
+    let point = app.store.point(id, n.into()).await?;
+    let string = point.map(|point| records::scenario(&point)).transpose()?.map(|scenario| scenario.string);
+    Ok(statics.zip(string))
 }
 
 /// True if a parameter may move the nodes of the mesh, which follows from the string and its wall.

@@ -43,14 +43,14 @@ pub use point::{
     ArtifactEntry, ArtifactList, ErrorPlace, ExportManifest, Failure, FailureList, MissingFile, PointDetail,
     PointLinks, PointList, PointRow, PointState, SelectedPointList,
 };
-pub use preset::{preset_detail, presets};
+pub use preset::{pipes, preset_detail, presets};
 pub use problem::{FieldProblem, PROBLEM_MEDIA_TYPE, ProblemDetails, ProblemKind};
 pub use refine::RefinedSamples;
 pub use refinement::{Refinement, RefinementState};
 pub use request::{AppendRequest, Design, RunRequest, SweepPatch, SweepRequest};
 pub use service::{
-    Collected, Collection, Health, LIMITS, Limits, Login, Queue, Retention, ScenarioDetail, ScenarioEntry,
-    ScenarioFile, ScenarioFormat, ScenarioList, Session, Worker, WorkerList,
+    Collected, Collection, Health, LIMITS, Limits, Login, PipeList, Queue, Retention, ScenarioDetail,
+    ScenarioEntry, ScenarioFile, ScenarioFormat, ScenarioList, Session, Worker, WorkerList,
 };
 pub use signs::Signs;
 pub use sweep::{

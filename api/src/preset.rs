@@ -1,8 +1,8 @@
-//! The preset scenarios as the service lists them.
+//! The preset scenarios and the catalogue of pipes as the service lists them.
 
-use drillsweep_scenario::{PRESETS, preset};
+use drillsweep_scenario::{CATALOGUE, PRESETS, preset};
 
-use crate::service::{ScenarioDetail, ScenarioEntry, ScenarioList};
+use crate::service::{PipeList, ScenarioDetail, ScenarioEntry, ScenarioList};
 
 /// Every preset, by name.
 pub fn presets() -> ScenarioList {
@@ -20,4 +20,9 @@ pub fn preset_detail(name: &str) -> Option<ScenarioDetail> {
     let (name, description) = PRESETS.iter().find(|(preset, _)| *preset == name)?;
     let scenario = Box::new(preset(name)?);
     Some(ScenarioDetail { name: (*name).to_owned(), description: (*description).to_owned(), scenario })
+}
+
+/// The catalogue of pipes.
+pub fn pipes() -> PipeList {
+    PipeList { pipes: CATALOGUE.clone() }
 }

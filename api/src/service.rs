@@ -1,6 +1,6 @@
 //! Answers of the service about itself.
 
-use drillsweep_scenario::{Scenario, ScenarioRequest};
+use drillsweep_scenario::{CataloguePipe, Scenario, ScenarioRequest};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +69,13 @@ pub const LIMITS: Limits = Limits {
     held_answers_per_owner: 100,
     open_points_per_owner: 500_000,
 };
+
+/// The catalogue of pipes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+pub struct PipeList {
+    /// Its pipes by size.
+    pub pipes: Vec<CataloguePipe>,
+}
 
 /// The preset scenarios.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, utoipa::ToSchema)]

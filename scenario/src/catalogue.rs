@@ -15,11 +15,11 @@ const MOST_NAMES: usize = 6;
 /// Bytes of a name from which it is none.
 const LONGEST: usize = 100;
 
-/// A pipe of the catalogue.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A pipe of the catalogue: a section of a string without its length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CataloguePipe {
-    /// Name, such as `5" 19.5# S-135 NC50`.
+    /// Name, such as `5" 19.5# S-135 NC50`, as `pipe` of a section has it.
     pub name: String,
     /// Kind.
     pub kind: SectionKind,

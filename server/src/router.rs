@@ -86,6 +86,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(cost::show))
         .routes(routes!(scenarios::list, scenarios::read))
         .routes(routes!(scenarios::show))
+        .routes(routes!(scenarios::pipes))
         .routes(routes!(imports::survey))
         .routes(routes!(imports::tally))
         .routes(routes!(imports::hole))

@@ -1,9 +1,10 @@
-//! Preset scenarios, and scenario files.
+//! Preset scenarios, scenario files, and the catalogue of pipes.
 
 use axum::Extension;
 use axum::extract::State;
 use drillsweep_api::{
-    LIMITS, ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest, preset_detail, presets,
+    LIMITS, PipeList, ProblemKind, ScenarioDetail, ScenarioFile, ScenarioList, ScenarioRequest,
+    preset_detail, presets,
 };
 
 use crate::answer::error::{Error, Result};
@@ -73,4 +74,18 @@ pub(crate) async fn show(Path(name): Path<String>) -> Result<Json<ScenarioDetail
             Err(Error::new(ProblemKind::NotFound, detail))
         }
     }
+}
+
+/// Catalogue of pipes
+///
+/// Drillpipe, heavy-weight drillpipe and collars by the names that `pipe` of a section has, with the fields that it fills in.
+#[utoipa::path(
+    get,
+    path = "/v1/pipes",
+    tag = "scenarios",
+    operation_id = "list_pipes",
+    responses((status = 200, description = "Every pipe", body = PipeList), Problems)
+)]
+pub(crate) async fn pipes() -> Json<PipeList> {
+    Json(drillsweep_api::pipes())
 }

@@ -245,3 +245,20 @@ async fn a_body_of_another_form_is_refused_at_its_place() {
         assert!(error["detail"].as_str().unwrap().contains(words), "{body}: {problem}");
     }
 }
+
+#[tokio::test]
+async fn a_pipe_of_the_catalogue_is_the_section_that_its_name_gives() {
+    let bench = Bench::new().await;
+    let pipes = bench.get("/v1/pipes").await.json()["pipes"].as_array().unwrap().clone();
+    let name = "5\" 19.5# S-135 NC50";
+    let pipe = pipes.iter().find(|pipe| pipe["name"] == name).unwrap();
+    assert_eq!(pipe["outer_diameter"], 0.127);
+    let key = async |mut section: serde_json::Value| {
+        section["count"] = json!(9);
+        section["length"] = json!(9.5);
+        let set = json!({"string.sections[1]": section});
+        let id = bench.submit(json!({"preset": "paper-200m", "set": set})).await;
+        bench.get(&format!("/v1/sweeps/{id}/points/1")).await.json()["key"].clone()
+    };
+    assert_eq!(key(json!({"pipe": name})).await, key(pipe.clone()).await);
+}

@@ -225,6 +225,10 @@ class Client:
         """A preset scenario in full."""
         return dict(self.get_json(f"/v1/scenarios/{_segment(name)}")["scenario"])
 
+    def pipes(self) -> list[dict[str, Any]]:
+        """The catalogue of pipes: sections without a length, in SI units, by the names that `pipe` of a section has."""
+        return list(self.get_json("/v1/pipes")["pipes"])
+
     def import_survey(
         self, source: str | Path | bytes, *, depth_unit: str | None = None, sheet: str | None = None
     ) -> dict[str, Any]:

@@ -15,6 +15,7 @@ pub mod dry_run;
 pub mod event;
 pub mod expand;
 pub mod forced;
+pub mod in_units;
 pub mod judgement;
 mod listed;
 pub mod point;

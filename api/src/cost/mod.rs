@@ -13,7 +13,7 @@ pub use text::{overview, text};
 pub use drillsweep_study::cost::{CostErrors, CostReport, CostRow};
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use drillsweep_scenario::{Integrator, TimeWindow};
     use drillsweep_sim::solve::run::MotionRegime;
     use drillsweep_study::cost::{
@@ -122,7 +122,7 @@ mod tests {
 
     /// Two methods that agree on orbit size but not on the radius, a preset with a spurious line, a fixed step, one run that
     /// failed, and two meshes.
-    pub(super) fn report() -> CostReport {
+    pub(crate) fn report() -> CostReport {
         let coarse = CostRow { mesh_factor: 2.0, elements: 158, ..row(Integrator::Esdirk4, 1e-3, 0.2, 0.3) };
         let fine = CostRow { mesh_factor: 0.5, elements: 585, ..row(Integrator::Esdirk4, 1e-3, 0.8, 0.04) };
         let mut draft = CostRow { name: "draft".to_owned(), ..row(Integrator::Esdirk4, 1e-3, 0.4, 0.4) };

@@ -86,6 +86,13 @@ impl Default for OperatingLimits {
     }
 }
 
+impl OperatingLimits {
+    /// Columns with their limits, for conversion.
+    pub(crate) fn values_mut(&mut self) -> impl Iterator<Item = (&str, &mut f64)> {
+        self.0.iter_mut().map(|(column, limit)| (column.as_str(), limit))
+    }
+}
+
 impl LimitChanges {
     /// Changes from a text: `COLUMN:VALUE` or `COLUMN:off`, separated by commas. A value may have a unit: `largest_side_force:5 klbf`.
     ///

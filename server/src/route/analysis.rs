@@ -6,8 +6,10 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::analysis::{self, Circuit, Diagnosis, HIGHEST_MODE_HZ, Modes, Plan};
+use drillsweep_api::in_units::InUnits;
 use drillsweep_api::judgement::{Judgement, LimitChanges, Line, OperatingLimits};
 use drillsweep_api::{PHYSICS_VERSION, PointDetail, ProblemDetails};
+use drillsweep_quantity::UnitChoice;
 use drillsweep_table::tables;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -75,6 +77,11 @@ pub(crate) struct ModesQuery {
     #[serde(default = "default_range", deserialize_with = "range")]
     #[param(default = 20.0, exclusive_minimum = 0.0, maximum = 50.0)]
     to_hz: f64,
+    /// Units of depths: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, separated by
+    /// commas; a member `units` of the answer then names them. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,measured_depth:m")]
+    units: Option<UnitChoice>,
 }
 
 fn default_range() -> f64 {
@@ -103,12 +110,16 @@ pub(crate) async fn modes(
     State(app): State<App>,
     Extension(caller): Extension<Caller>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(ModesQuery { to_hz }): Query<ModesQuery>,
+    Query(ModesQuery { to_hz, units }): Query<ModesQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let point = point(&app, &id, n).await?;
-    let tag = Tag::of(Format::Json, &("modes", &point.key, to_hz));
-    computed(&app, &caller, &headers, tag, move || analysis::modes_up_to(&point.scenario, to_hz)).await
+    let units = units.unwrap_or_default();
+    let tag = Tag::of(Format::Json, &("modes", &point.key, to_hz, &units));
+    computed(&app, &caller, &headers, tag, move || {
+        Ok(InUnits::new(analysis::modes_up_to(&point.scenario, to_hz)?, &units))
+    })
+    .await
 }
 
 /// Pressures of the mud's circuit at a point
@@ -145,6 +156,11 @@ pub(crate) struct DiagnosisQuery {
     #[serde(default, deserialize_with = "value::limits")]
     #[param(value_type = Option<String>, example = "bit_stick_slip_severity:0.5,largest_side_force:20000")]
     limits: LimitChanges,
+    /// Units of evidence, limits, depths and amplitudes: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, separated by
+    /// commas; a member `units` of the answer then names them. Absent means the kept units.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,measured_depth:m")]
+    units: Option<UnitChoice>,
 }
 
 /// Diagnosis of a point: class of its motion, and causes of its spectral lines
@@ -164,17 +180,17 @@ pub(crate) async fn diagnosis(
     State(app): State<App>,
     Extension(caller): Extension<Caller>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(DiagnosisQuery { limits }): Query<DiagnosisQuery>,
+    Query(DiagnosisQuery { limits, units }): Query<DiagnosisQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let limits = app.config.operating_limits.with(&limits);
     let point = point(&app, &id, n).await?;
-    let tag = Tag::of(Format::Json, &("diagnosis", &point.key, &point.summary, &limits));
+    let tag = Tag::of(Format::Json, &("diagnosis", &point.key, &point.summary, &limits, &units));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
     let diagnosis = diagnose(&app, &caller, &id, point, &limits).await?;
-    Ok(tag.on(Json(diagnosis).into_response()))
+    Ok(tag.on(Json(InUnits::new(diagnosis, &units.unwrap_or_default())).into_response()))
 }
 
 /// Diagnosis of a point that has failed or has a result.

@@ -4,13 +4,15 @@ use axum::extract::State;
 use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use drillsweep_api::cost::{CostReport, Measure, table};
+use drillsweep_api::in_units::InUnits;
 use drillsweep_chart::{PNG_WIDTH, work_precision};
+use drillsweep_quantity::UnitChoice;
 use drillsweep_table::csv;
 use serde::Deserialize;
 
 use crate::answer::blocking::blocking;
 use crate::answer::error::{Error, Result};
-use crate::answer::extract::{Path, Query};
+use crate::answer::extract::{Path, Query, value};
 use crate::answer::recordings;
 use crate::app::App;
 use crate::openapi::answers::Problems;
@@ -28,6 +30,11 @@ pub(crate) struct CostQuery {
     /// Error that a chart shows; absent means the first of orbit size, radius deviation and trajectory that is known.
     #[param(inline)]
     measure: Option<Measure>,
+    /// Units of depths and values in JSON: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, separated by commas; a member `units` of
+    /// the answer then names them. Absent means the kept units. Other formats have ratios and times alone.
+    #[serde(default, deserialize_with = "value::units")]
+    #[param(value_type = Option<String>, example = "field,orbit_radius_rms:mm")]
+    units: Option<UnitChoice>,
 }
 
 /// Formats of a study.
@@ -80,10 +87,11 @@ impl CostFormat {
 pub(crate) async fn show(
     State(app): State<App>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(CostQuery { format, measure }): Query<CostQuery>,
+    Query(CostQuery { format, measure, units }): Query<CostQuery>,
 ) -> Result<Response> {
     let stored = recordings::stored(&app.store, &id, n, "cost").await?.whole().await?;
-    if format == CostFormat::Json {
+    let units = units.unwrap_or_default();
+    if format == CostFormat::Json && units.is_kept() {
         return Ok(answer(stored.into(), format));
     }
     blocking(move || {
@@ -94,7 +102,10 @@ pub(crate) async fn show(
         }
         let drawing = || work_precision(&report, measure.unwrap_or_else(|| Measure::usual(&report)));
         let body = match format {
-            CostFormat::Json | CostFormat::Csv => {
+            CostFormat::Json => {
+                serde_json::to_vec(&InUnits::new(report, &units)).map_err(|error| Error::internal(&error))?
+            }
+            CostFormat::Csv => {
                 csv::write(&table([&report])).map_err(|error| Error::internal(&error))?.into_bytes()
             }
             CostFormat::Svg => drawing().svg().into_bytes(),

@@ -95,6 +95,41 @@ async fn field_units_times_their_factors_are_the_kept_numbers() {
 }
 
 #[tokio::test]
+async fn modes_and_a_diagnosis_have_depths_and_limits_in_requested_units() {
+    /// International foot \[m\] and ksi \[Pa\], a thousand pounds-force on a square inch.
+    const FOOT: f64 = 0.3048;
+    const KSI: f64 = 4_448.221_615_260_5 / (0.0254 * 0.0254);
+    let (bench, path) = finished().await;
+    let modes = format!("{path}/points/1/modes?to_hz=2");
+    let (kept, field) =
+        (bench.get(&modes).await.json(), bench.get(&format!("{modes}&units=field")).await.json());
+    let same = |shown: &Value, size: f64, kept: &Value| {
+        let (shown, kept) = (shown.as_f64().unwrap(), kept.as_f64().unwrap());
+        assert!((shown * size - kept).abs() <= 2.0 * f64::EPSILON * kept.abs(), "{shown} for {kept}");
+    };
+    assert!(!kept["modes"].as_array().unwrap().is_empty() && kept.get("units").is_none());
+    for (shown, kept) in field["modes"].as_array().unwrap().iter().zip(kept["modes"].as_array().unwrap()) {
+        same(&shown["measured_depth"], FOOT, &kept["measured_depth"]);
+        same(&shown["extent"][1], FOOT, &kept["extent"][1]);
+        assert_eq!(shown["frequency_hz"], kept["frequency_hz"]);
+    }
+    assert_eq!(field["units"], json!({"measured_depth": "ft", "extent": "ft"}));
+    let diagnosis = format!("{path}/points/1/diagnosis");
+    let (kept, field) = (
+        bench.get(&diagnosis).await.json(),
+        bench.get(&format!("{diagnosis}?units=field,largest_equivalent_stress:MPa")).await.json(),
+    );
+    same(&field["limits"]["largest_bending_stress"], KSI, &kept["limits"]["largest_bending_stress"]);
+    same(&field["limits"]["largest_equivalent_stress"], 1e6, &kept["limits"]["largest_equivalent_stress"]);
+    assert_eq!(field["units"]["largest_equivalent_stress"], "MPa");
+    assert_eq!(field["sentence"], kept["sentence"]);
+    for wrong in ["modes?units=metric", "diagnosis?units=measured_depth:psi", "cost?units=state:m"] {
+        let problem = bench.get(&format!("{path}/points/1/{wrong}")).await.problem(400, "invalid-parameter");
+        assert_eq!(problem["errors"][0]["parameter"], "units", "{problem}");
+    }
+}
+
+#[tokio::test]
 async fn etags_depend_on_units_and_a_copy_of_the_same_units_is_current() {
     let (bench, path) = finished().await;
     for path in [

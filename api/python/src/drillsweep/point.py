@@ -306,26 +306,30 @@ class Point(Reported):
         """Motion over the whole of a run that ends once it has settled, at 20 Hz at most."""
         return self.view("course", units=units)
 
-    def diagnosis(self, limits: Limits | None = None) -> dict[str, Any]:
+    def diagnosis(self, limits: Limits | None = None, *, units: str | None = None) -> dict[str, Any]:
         """Class of the motion by limits, and causes of the spectral lines.
 
         Args:
             limits: Changes of the service's limits, by column, as numbers in the column's unit or
                 with a unit; None removes one.
+            units: Units of evidence, limits, depths and amplitudes, as of `history`; the answer names them in `units`.
         """
-        return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits)})
+        return self._client.get_json(f"{self.path}/diagnosis", {"limits": limits_text(limits), "units": units})
 
-    def cost(self) -> dict[str, Any]:
-        """Cost of accuracy, if the scenario has a `cost_study`."""
-        return self._client.get_json(f"{self.path}/cost")
+    def cost(self, *, units: str | None = None) -> dict[str, Any]:
+        """Cost of accuracy, if the scenario has a `cost_study`; depths and values in `units` as of `diagnosis`."""
+        return self._client.get_json(f"{self.path}/cost", {"units": units})
 
     def plan(self) -> dict[str, Any]:
         """Plan of its scenario: every effect with the reason for it, mesh, steps and processor times."""
         return self._client.get_json(f"{self.path}/plan")
 
-    def modes(self, *, to_hz: SupportsFloat | None = None) -> dict[str, Any]:
-        """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50)."""
-        return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz})
+    def modes(self, *, to_hz: SupportsFloat | None = None, units: str | None = None) -> dict[str, Any]:
+        """The modes of vibration about the equilibrium up to a frequency [Hz] (20 unless given, at most 50).
+
+        Depths are in `units` as of `diagnosis`.
+        """
+        return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz, "units": units})
 
     def hydraulics(self) -> dict[str, Any]:
         """Pressures of the mud's circuit: losses by part, equivalent circulating density by node, standpipe pressure.

@@ -168,3 +168,14 @@ export function wordBox(label, options, chosen, set) {
   );
   return box;
 }
+
+/** A box for the name of a row. @param {string} label @param {string | undefined} value @param {any} _row @param {(value: string) => void} set */
+export function nameBox(label, value, _row, set) {
+  const box = h("input", {
+    "aria-label": label,
+    value: value ?? "",
+    maxlength: "100",
+    onchange: () => set(box.value.trim()),
+  });
+  return box;
+}

@@ -1,7 +1,9 @@
 // A file of another program, which the service reads into a part of the scenario.
 
 import { Problem, sendFile, Unreachable } from "../data/api.js";
+import { sheetNames } from "../data/workbook.js";
 import { choice, fill, h } from "../ui/dom.js";
+import { attend } from "../ui/notices.js";
 
 /**
  * Meaning of a file, as the service answers it.
@@ -11,8 +13,8 @@ import { choice, fill, h } from "../ui/dom.js";
 /** Choices that a file may leave open, by the parameter of the request. @typedef {Record<string, {label: string, options: [value: string, text: string][]}>} Choices */
 
 /**
- * A chooser of a file, with the meaning of the last one below it.
- * @param {"survey" | "tally"} part
+ * A chooser of a file, and of a sheet if it is a workbook of several, with the meaning of the last one below it.
+ * @param {"survey" | "tally" | "hole"} part
  * @param {Choices} choices
  * @param {() => Record<string, string>} query further parameters of the request
  * @param {(answer: any) => void} taken is called with the answer to a file that was read
@@ -23,13 +25,15 @@ export function importFile(part, choices, query, taken, signal) {
   const chosen = {};
   /** @type {File | undefined} */
   let file;
+  const sheets = h("div", {});
   const report = h("div", { class: "small soft", "aria-live": "polite" });
   const box = h("input", {
     type: "file",
     "aria-label": `File of a ${part}`,
     onchange: () => {
       file = box.files?.[0];
-      load();
+      delete chosen.sheet;
+      attend(Promise.all([offerSheets(), load()]), signal);
     },
   });
   const load = async () => {
@@ -43,16 +47,28 @@ export function importFile(part, choices, query, taken, signal) {
       fill(report, h("p", { class: "wrong" }, `${file.name}: ${error.message}`));
     }
   };
+  const offerSheets = async () => {
+    const offered = file;
+    const names = offered ? await sheetNames(offered) : [];
+    if (offered !== file) return;
+    const options = names.map((name) => /** @type {[string, string]} */ ([name, name]));
+    const sheet = choice("Sheet", options, names[0] ?? "", (name) => {
+      chosen.sheet = name;
+      attend(load(), signal);
+    });
+    fill(sheets, names.length > 1 && sheet);
+  };
   const boxes = Object.entries(choices).map(([name, { label, options }]) =>
     choice(label, options, "", (value) => {
       chosen[name] = value;
-      load();
+      attend(load(), signal);
     }),
   );
   return h(
     "div",
     {},
     h("label", { class: "field" }, h("span", {}, "From a file: CSV, Excel, WITSML"), box),
+    sheets,
     boxes,
     report,
   );

@@ -46,3 +46,10 @@ export function changedField(changes, path, given) {
       whole === undefined ? given : whole,
     );
 }
+
+/** A document without members that are null. @param {any} value @returns {any} */
+export function withoutNulls(value) {
+  if (value === null || typeof value !== "object") return value;
+  const members = Object.entries(value).filter(([, member]) => member !== null);
+  return Object.fromEntries(members.map(([name, member]) => [name, withoutNulls(member)]));
+}

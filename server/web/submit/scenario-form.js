@@ -14,6 +14,7 @@ const ELSEWHERE = [
   "name",
   "accuracy",
   "well.survey",
+  "well.section",
   "recording.nodes",
   "recording.spectrum_windows",
   "recording.snapshots",

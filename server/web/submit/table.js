@@ -6,8 +6,8 @@ import { button, group, numberBox, wordBox } from "./fields.js";
 import { memberOf } from "./members.js";
 
 /**
- * A column: a member of the row, its head, and the words of a choice or the kind of number. `cell` makes any other input.
- * @typedef {{name: string, text: string, words?: string[], isOptional?: boolean, isSigned?: boolean, isList?: boolean, cell?: (label: string, value: any, row: any, set: (entered: unknown) => void) => HTMLElement}} Column
+ * A column: a member of the row, its head, and the words of a choice or the kind of number. `cell` makes any other input, which sets its member or replaces the row.
+ * @typedef {{name: string, text: string, words?: string[], isOptional?: boolean, isSigned?: boolean, isList?: boolean, cell?: (label: string, value: any, row: any, set: (entered: unknown) => void, replace: (row: any) => void) => HTMLElement}} Column
  */
 
 /**
@@ -74,7 +74,8 @@ function cell({ path, one }, column, row, at, edited) {
   const value = memberOf(row, name);
   const label = `${text} of ${one} ${at + 1}`;
   const set = (/** @type {unknown} */ entered) => edited.setMember(path, `[${at}].${name}`, entered);
-  if (column.cell) return column.cell(label, value, row, set);
+  const replace = (/** @type {any} */ whole) => edited.set(path, edited.value(path).with(at, whole));
+  if (column.cell) return column.cell(label, value, row, set, replace);
   if (words)
     return wordBox(
       label,

@@ -5,10 +5,11 @@ import { inputUnit, number, say } from "../data/units.js";
 import { drawTrack, smallCanvas } from "../draw/small-pictures.js";
 import { partsInWords } from "../draw/string-track.js";
 import { h } from "../ui/dom.js";
-import { numberBox, wordBox } from "./fields.js";
+import { nameBox, numberBox, wordBox } from "./fields.js";
 import { readersNumber } from "./entries.js";
 import { importFile } from "./import-file.js";
-import { memberOf } from "./members.js";
+import { memberOf, withoutNulls } from "./members.js";
+import { namesOfPipes, pipeColumn } from "./pipes.js";
 import { tablePart } from "./table.js";
 import { read } from "./values.js";
 
@@ -152,25 +153,25 @@ export function stringPart(signal) {
     shown.set(SECTIONS, shown.value("string.order") === "from_bit" ? fromTop.reverse() : fromTop);
   };
   const file = importFile("tally", CHOICES, () => ({}), taken, signal);
+  const names = namesOfPipes();
+  const tables = TABLES.map((table) =>
+    table.path === SECTIONS
+      ? { ...table, columns: table.columns.toSpliced(1, 0, pipeColumn(signal)) }
+      : table,
+  );
   return (edited) => {
     shown = edited;
-    return stringFields(edited, file);
+    return stringFields(tables, edited, [file, names]);
   };
 }
 
-/** @param {any} value @returns {any} */
-function withoutNulls(value) {
-  if (value === null || typeof value !== "object") return value;
-  const members = Object.entries(value).filter(([, member]) => member !== null);
-  return Object.fromEntries(members.map(([name, member]) => [name, withoutNulls(member)]));
-}
-
 /**
+ * @param {import("./table.js").Table[]} tables
  * @param {import("./fields.js").Edited} edited
- * @param {HTMLElement} file
+ * @param {HTMLElement[]} last parts below the tally
  * @returns {HTMLElement[]}
  */
-function stringFields(edited, file) {
+function stringFields(tables, edited, last) {
   /** @type {any[]} */
   const sections = edited.value(SECTIONS) ?? [];
   const [order, bit_depth] = ["order", "bit_depth"].map((name) => edited.value(`string.${name}`));
@@ -178,7 +179,7 @@ function stringFields(edited, file) {
     ...ownMaterials(sections, edited),
     lengthLine(sections, edited),
     picturePart({ sections, order, bit_depth }),
-    file,
+    ...last,
   ];
   const shows = {
     head: `Down to [${inputUnit("measured_depth").symbol}]`,
@@ -189,20 +190,9 @@ function stringFields(edited, file) {
           Number.isFinite(bottom) && bottom > 0 ? number(readersNumber("measured_depth", bottom), 6) : "–",
         ),
   };
-  return TABLES.map((table) =>
+  return tables.map((table) =>
     table.path === SECTIONS ? tablePart({ ...table, shows }, edited, below) : tablePart(table, edited),
   );
-}
-
-/** @param {string} label @param {string | undefined} value @param {any} _row @param {(value: string) => void} set */
-function nameBox(label, value, _row, set) {
-  const box = h("input", {
-    "aria-label": label,
-    value: value ?? "",
-    maxlength: "100",
-    onchange: () => set(box.value.trim()),
-  });
-  return box;
 }
 
 /** @param {string} label @param {string} inherits @param {Material | undefined} value @param {boolean} isDisabled @param {(value: Material | undefined) => void} set */

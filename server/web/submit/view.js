@@ -11,6 +11,7 @@ import { MAY_NOT, maySubmit } from "../ui/session.js";
 import { snippets } from "../ui/snippets.js";
 import { Accuracy, accuracyWay } from "./accuracy.js";
 import { FieldsPart } from "./fields.js";
+import { HOLE, holePart, isHole } from "./hole.js";
 import { Kept } from "./kept.js";
 import { isMesh, MESH, meshFields } from "./mesh.js";
 import { plannedPart } from "./plan.js";
@@ -161,6 +162,7 @@ class NewSweep {
     this.#changes = new Rows("set", rowsOf(Object.fromEntries(set)), changed, isElsewhere);
     this.#parts = [
       new FieldsPart("String: tally, gauges, unbalance", STRING, this.#changes, stringPart(signal), signal),
+      new FieldsPart("Hole: casings and open hole", [HOLE], this.#changes, holePart(signal), signal),
       new FieldsPart("Mesh", [MESH], this.#changes, meshFields, signal),
     ];
     this.#recording = new Recording(this.#changes, signal);
@@ -389,7 +391,7 @@ class NewSweep {
 
 /** True of changes that parts of the form show in place of rows. @param {import("./rows.js").Row} row */
 function isElsewhere(row) {
-  return isRecording(row) || isMesh(row) || isTally(row) || isSection(row);
+  return isRecording(row) || isMesh(row) || isTally(row) || isHole(row) || isSection(row);
 }
 
 /** Rows of a request's changes. @param {Record<string, unknown>} set @returns {import("./rows.js").Row[]} */

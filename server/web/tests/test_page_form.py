@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape, quoteattr
 
 import pytest
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
 from browsing import Opens, requested, until
+from drillsweep import Client
 
 SCENARIO = "#/new?preset=paper-200m"
 
@@ -36,7 +40,7 @@ def refused(opened: Opens, troubles: list[str]) -> Iterator[None]:
     """Takes away what a browser writes of requests that are refused on the way to one that is not."""
     del opened  # It is requested so that this ends before its pages do.
     yield
-    troubles[:] = [text for text in troubles if "422" not in text]
+    troubles[:] = [text for text in troubles if "422" not in text and "400" not in text]
 
 
 def test_the_plan_is_requested_once_before_the_form_is_loaded(opened: Opens) -> None:
@@ -175,6 +179,98 @@ def test_a_tally_of_a_file_fills_its_table_and_shows_what_it_left_out(opened: Op
 
     until(page, lambda: [section["length"] for section in sections()] == [199.5, 0.5])
     assert [section["outer_diameter"] for section in sections()] == [0.1651, 0.1524]
+
+
+def workbook(sheets: dict[str, list[list[str | float]]]) -> bytes:
+    """An Excel workbook of cells with texts and numbers (ECMA-376)."""
+
+    def cell(value: str | float) -> str:
+        if isinstance(value, str):
+            return f'<c t="inlineStr"><is><t>{escape(value)}</t></is></c>'
+        return f"<c><v>{value}</v></c>"
+
+    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+    links = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+    listed = "".join(
+        f"<sheet name={quoteattr(name)} sheetId='{at}' r:id='r{at}'/>" for at, name in enumerate(sheets, 1)
+    )
+    related = "".join(
+        f"<Relationship Id='r{at}' Type='{links}/worksheet' Target='worksheets/sheet{at}.xml'/>"
+        for at in range(1, len(sheets) + 1)
+    )
+    package = "http://schemas.openxmlformats.org/package/2006/relationships"
+    files = {
+        "_rels/.rels": f"<Relationships xmlns='{package}'><Relationship Id='r1' Type='{links}/officeDocument' "
+        "Target='xl/workbook.xml'/></Relationships>",
+        "xl/workbook.xml": f"<workbook xmlns='{main}' xmlns:r='{links}'><sheets>{listed}</sheets></workbook>",
+        "xl/_rels/workbook.xml.rels": f"<Relationships xmlns='{package}'>{related}</Relationships>",
+    }
+    for at, rows in enumerate(sheets.values(), 1):
+        data = "".join(f"<row>{''.join(map(cell, row))}</row>" for row in rows)
+        files[f"xl/worksheets/sheet{at}.xml"] = f"<worksheet xmlns='{main}'><sheetData>{data}</sheetData></worksheet>"
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return made.getvalue()
+
+
+@pytest.mark.usefixtures("refused")
+def test_a_hole_is_read_from_a_sheet_of_a_workbook(opened: Opens, tmp_path: Path) -> None:
+    file = tmp_path / "well.xlsx"
+    casings: list[list[str | float]] = [
+        ["Section", "Top (m)", "Bottom (m)", "ID (mm)", "Hole size (mm)"],
+        ["casing", 0, 120, 224.5, ""],
+        ["open hole", 120, 200, "", 215.9],
+    ]
+    file.write_bytes(workbook({"Notes & plans": [["Hole of the well"]], "Casings": casings}))
+    page = opened(SCENARIO)
+    page.locator("summary", has_text="Hole: casings and open hole").click()
+    hole = page.get_by_role("group", name="Hole sections")
+    page.get_by_label("File of a hole").set_input_files(file)
+    sheet = hole.get_by_label("Sheet")
+    expect(sheet.locator("option")).to_have_text(["Notes & plans", "Casings"])
+    expect(hole.locator("p.wrong")).to_contain_text("well.xlsx: ")
+    sheet.select_option("Casings")
+    expect(hole.locator("tbody tr")).to_have_count(2)
+    expect(hole.get_by_label("Diameter of hole section 1")).to_have_value("0.2245")
+
+    def sections() -> list[dict[str, Any]]:
+        return list(changes(page).get("well.section", []))
+
+    until(page, lambda: [section["from"] for section in sections()] == [0, 120])
+    assert [section["hole_diameter"] for section in sections()] == [0.2245, 0.2159]
+    planned(page)
+    # A file without sheets has none to choose.
+    other = tmp_path / "hole.csv"
+    other.write_text("Section;Top (m);ID (mm)\nopen hole;0;215,9\n")
+    page.get_by_label("File of a hole").set_input_files(other)
+    expect(hole.locator("tbody tr")).to_have_count(1)
+    expect(sheet).to_have_count(0)
+
+
+def test_a_pipe_of_the_catalogue_fills_a_row_of_the_tally(opened: Opens, client: Client) -> None:
+    name = '5" 19.5# S-135 NC50'
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    box = page.get_by_label("Pipe of the catalogue of section 2", exact=True)
+    box.focus()
+    expect(page.locator("#pipes option")).to_have_count(len(client.pipes()))
+    enter(box, name)
+    expect(page.get_by_label("Outer diameter of section 2", exact=True)).to_have_value("0.127")
+    expect(page.get_by_label("Name of section 2", exact=True)).to_have_value(name)
+    planned(page)
+    row = changes(page)["string.sections"][1]
+    [pipe] = [pipe for pipe in client.pipes() if pipe["name"] == name]
+    assert (row["count"], row["length"], row["mass_per_length"]) == (9, 9.5, pipe["mass_per_length"])
+    # The same as by its name alone.
+    by_name = {"pipe": name, "count": 9, "length": 9.5}
+    keys = [client.plan("paper-200m", set={"string.sections[1]": one}).points[0].key for one in (row, by_name)]
+    assert keys[0] == keys[1]
+    enter(page.get_by_label("Pipe of the catalogue of section 3", exact=True), "no such pipe")
+    expect(page.get_by_label("Pipe of the catalogue of section 3", exact=True)).to_have_attribute(
+        "aria-invalid", "true"
+    )
 
 
 @pytest.mark.usefixtures("refused")

@@ -7,6 +7,7 @@ import { accuracyWay } from "../../submit/accuracy.js";
 import { nodesOf, nodesText, windowWith } from "../../submit/kept.js";
 import { changedField, memberOf, withMember } from "../../submit/members.js";
 import { isMesh, proposedMesh, wayOf } from "../../submit/mesh.js";
+import { withPipe } from "../../submit/pipes.js";
 import { isRecording, wayOf as windowWay } from "../../submit/recording.js";
 import { numbersOf } from "../../submit/table.js";
 import { isTally, materialName } from "../../submit/tally.js";
@@ -116,4 +117,30 @@ test("an accuracy is a name, an allowed error or a step, and another value stays
     ["", "draft", "statistics", "trajectory", "steps"],
   );
   assert.deepEqual(["fine", "steps", {}, null].map(accuracyWay), Array(4).fill(undefined));
+});
+
+test("a pipe of the catalogue takes the place of a section but for its number and length", () => {
+  const row = {
+    name: "motor",
+    kind: "collar",
+    count: 3,
+    length: 9.1,
+    mass_per_length: 200,
+    blade_diameter: 0.3,
+  };
+  const collar = { name: "DC", kind: "collar", outer_diameter: 0.16, mass_per_length: 136, tool_joint: null };
+  const expected = {
+    name: "DC",
+    kind: "collar",
+    outer_diameter: 0.16,
+    mass_per_length: 136,
+    count: 3,
+    length: 9.1,
+  };
+  assert.deepEqual(withPipe(row, collar), expected);
+  const joint = { length: 0.25, outer_diameter: 0.168, material: null };
+  assert.deepEqual(withPipe({ length: 9 }, { ...collar, tool_joint: joint }).tool_joint, {
+    length: 0.25,
+    outer_diameter: 0.168,
+  });
 });

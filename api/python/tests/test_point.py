@@ -105,6 +105,10 @@ def test_a_point_has_its_plan_and_its_modes(sweep: Sweep) -> None:
     modes = point.modes(to_hz=5.0)
     assert modes["completeness"] == "counted"
     assert [mode["frequency_hz"] for mode in modes["modes"]] == sorted(mode["frequency_hz"] for mode in modes["modes"])
+    in_feet = point.modes(to_hz=5.0, units="field")
+    assert in_feet["units"]["measured_depth"] == "ft"
+    feet = [mode["measured_depth"] for mode in in_feet["modes"]]
+    assert [0.3048 * depth for depth in feet] == pytest.approx([mode["measured_depth"] for mode in modes["modes"]])
 
 
 def test_full_spectrum_is_the_transform_of_the_orbit(sweep: Sweep) -> None:

@@ -33,6 +33,7 @@ const LINE = 44,
 /** Sections and rows that a scenario does without, as they are proposed: usual values in served units. @type {Record<string, any>} */
 const PROPOSED = {
   mud: { density: 1200, flow_rate: 0.02, yield_stress: 0.29, consistency: 0.07, flow_index: 0.55 },
+  excitation: { above_bit: 300, direction: "axial", force: 10000, frequency_hz: 18 },
   "cost_study.methods": { integrator: "esdirk4", steps: [0.001, 0.0005, 0.00025] },
   "cost_study.reference.methods": { integrator: "esdirk4", step: 0.000125 },
 };

@@ -15,11 +15,14 @@ use drillsweep_sim::control::Control;
 use drillsweep_study::finer::{Difference, Verdict};
 use random_runs::{Refined, RunEnd, at_accuracy, run, run_and_refine};
 use random_scenario::random_scenario;
+use random_sources::add_sources;
 
 #[path = "../tests/random_runs/mod.rs"]
 mod random_runs;
 #[path = "../../sim/tests/random_scenario/mod.rs"]
 mod random_scenario;
+#[path = "../tests/random_sources/mod.rs"]
+mod random_sources;
 
 #[derive(Parser)]
 struct Arguments {
@@ -41,6 +44,9 @@ struct Arguments {
     /// Run the scenarios at this accuracy for 0.4 s, instead of their own accuracy and duration.
     #[arg(long, value_parser = ["draft", "standard", "reference"])]
     accuracy: Option<String>,
+    /// Give every scenario a law of the bit, a top drive and excitations.
+    #[arg(long)]
+    sources: bool,
     /// Run every scenario with a finer step as well, and report the number of results that it contradicts.
     #[arg(long)]
     finer: bool,
@@ -54,7 +60,10 @@ struct Arguments {
 
 impl Arguments {
     fn scenario(&self, index: u64) -> Scenario {
-        let scenario = random_scenario(self.seed, index);
+        let mut scenario = random_scenario(self.seed, index);
+        if self.sources {
+            add_sources(self.seed, index, &mut scenario);
+        }
         match self.accuracy.as_deref().and_then(AccuracyPreset::named) {
             Some(preset) => at_accuracy(scenario, preset),
             None => scenario,

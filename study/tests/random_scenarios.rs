@@ -1,4 +1,4 @@
-//! Three hundred random scenarios: each run ends with a finite result whose ledger closes within its bound, or with a typed failure; at the
+//! 350 random scenarios: each run ends with a finite result whose ledger closes within its bound, or with a typed failure; at the
 //! accuracy of a preset a finer step confirms most results. More of them, and other seeds: `cargo bench -p drillsweep-study --bench soak`.
 
 use drillsweep_scenario::{AccuracyPreset, Scenario, TopCondition};
@@ -6,10 +6,12 @@ use drillsweep_sim::control::Control;
 use drillsweep_study::finer::{Difference, Verdict};
 use random_runs::{Refined, RunEnd, at_accuracy, run, run_and_refine};
 use random_scenario::random_scenario;
+use random_sources::add_sources;
 
 mod random_runs;
 #[path = "../../sim/tests/random_scenario/mod.rs"]
 mod random_scenario;
+mod random_sources;
 
 /// Runs fifty scenarios of a seed; at least `finite` of them must have a result.
 fn fifty(seed: u64, finite: usize) {
@@ -62,6 +64,11 @@ fn scenarios_of_seed_4() {
 #[test]
 fn scenarios_of_seed_5() {
     fifty(5, 30);
+}
+
+#[test]
+fn scenarios_of_seed_7_with_bit_drive_and_excitation() {
+    fifty_changed(7, 25, |index, scenario| add_sources(7, index, scenario));
 }
 
 #[test]

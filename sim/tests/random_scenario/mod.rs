@@ -262,10 +262,10 @@ fn draw_effects(draw: &mut Draw) -> Effects {
 }
 
 /// Numbers without pattern from a seed: SplitMix64 (Steele, Lea and Flood 2014).
-struct Draw(u64);
+pub(crate) struct Draw(u64);
 
 impl Draw {
-    fn new(seed: u64, index: u64) -> Self {
+    pub(crate) fn new(seed: u64, index: u64) -> Self {
         let mut draw = Self(seed);
         let start = draw.next() ^ index.wrapping_mul(0xd134_2543_de82_ef95);
         Self(start)
@@ -285,27 +285,27 @@ impl Draw {
     }
 
     /// A number in \[low, high), uniform.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// A number in \[low, high), uniform in its logarithm.
-    fn log(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn log(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
     /// Zero with a probability, otherwise uniform in its logarithm.
-    fn or_zero(&mut self, zero: f64, low: f64, high: f64) -> f64 {
+    pub(crate) fn or_zero(&mut self, zero: f64, low: f64, high: f64) -> f64 {
         let value = self.log(low, high);
         if self.chance(zero) { 0.0 } else { value }
     }
 
-    fn chance(&mut self, probability: f64) -> bool {
+    pub(crate) fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
     /// A whole number below `count`.
-    fn below(&mut self, count: u64) -> u64 {
+    pub(crate) fn below(&mut self, count: u64) -> u64 {
         self.next() % count
     }
 }

@@ -7,7 +7,7 @@ import json
 import pytest
 from playwright.sync_api import Route, expect
 
-from browsing import MINUS, Opens, drawn, trace, until
+from browsing import MINUS, Opens, drawn, taken, trace, until
 from drillsweep import Client, Sweep
 from service import SHORT
 
@@ -91,6 +91,7 @@ def test_a_link_that_late_answers_draw_again_under_the_mouse_is_followed(opened:
     until(page, lambda: bool(held))
     page.mouse.down()
     held[0].continue_()
-    expect(panel).to_contain_text("Dotted: predicted times of this point")
+    expect(page.get_by_role("cell", name="axial motion", exact=True)).to_be_visible()
+    taken(page)
     page.mouse.up()
     expect(page.get_by_label("Tags")).to_be_visible()

@@ -121,7 +121,7 @@ fn a_bit_torque_turns_the_string_as_an_independent_program_has_it() {
     }
 }
 
-/// What a run's ledger misses of the energy turned over, without the energy of a speed that it began with.
+/// Imbalance of a run's ledger over the energy turned over, without the energy of a speed that it began with.
 fn imbalance(energy: &[EnergyRow]) -> f64 {
     let [first, last] = [energy.first(), energy.last()].map(Option::unwrap);
     (last.residual - first.residual).abs() / last.turned_over()

@@ -168,11 +168,11 @@ pub struct DrillString {
     /// in the hole.
     #[serde(default)]
     pub bit_depth: Option<f64>,
-    /// Points at which the clearance is given; none by default. Each has a node. Without them, and without blades of sections, stabilizers touch the
+    /// Points at which the clearance is given, at most 1000; none by default. Each has a node. Without them, and without blades of sections, stabilizers touch the
     /// wall with their bodies only.
     #[serde(default)]
     pub gauges: Vec<Gauge>,
-    /// Discrete unbalance masses; none unless given. A node is put at each. Without them nothing excites forward whirl at the speed
+    /// Discrete unbalance masses, at most 1000; none unless given. A node is put at each. Without them nothing excites forward whirl at the speed
     /// of rotation.
     #[serde(default)]
     pub unbalance: Vec<UnbalanceMass>,

@@ -114,13 +114,13 @@ impl WeakeningTorque {
         // The torque is at most that of a bit about to turn, either way.
         let most = response * (self.scale * (1.0 + self.excess) + self.nominal_torque.abs());
         let end = self.nominal_speed + without - most.copysign(first);
-        let folds = self.folds(response);
+        let mut folds = self.folds(response);
+        if end < start {
+            folds.reverse();
+        }
         let is_between = |speed: &f64| (*speed - start) * (*speed - end) < 0.0;
-        let mut stops: Vec<f64> = folds.into_iter().filter(is_between).collect();
-        stops.sort_by(|a, b| (a - start).abs().total_cmp(&(b - start).abs()));
-        stops.push(end);
         let mut from = start;
-        for to in stops {
+        for to in folds.into_iter().filter(is_between).chain([end]) {
             if excess(to)[0] * first <= 0.0 {
                 return bracketed(excess, from, to) - self.nominal_speed;
             }
@@ -129,7 +129,7 @@ impl WeakeningTorque {
         end - self.nominal_speed
     }
 
-    /// Speeds between which the equation of a stage is monotone.
+    /// Speeds between which the equation of a stage is monotone, increasing.
     fn folds(&self, response: f64) -> [f64; 4] {
         let steepest = response * self.scale * self.excess / self.weakening_speed;
         let fold = (self.weakening_speed * steepest.ln()).max(self.regularisation_speed);

@@ -11,6 +11,7 @@ use drillsweep_scenario::{ExcitationDirection, ExcitingForce};
 use crate::force::nodal::{At, Dependence, ForceContext, NodalForce};
 use crate::force::term::{Account, Decision, EffectContext, Term, no, yes};
 use crate::math::dof::{DOFS, THETA_Z, U, V, W};
+use crate::string::nearest_node;
 
 pub(crate) const TERM: Term = Term::new(decide);
 
@@ -44,9 +45,7 @@ pub(super) fn force(context: &ForceContext<'_>) -> Option<Arc<dyn NodalForce>> {
     let mut nodes = Vec::new();
     let mut signals = Vec::new();
     for force in forces.filter(|force| amplitude(force) != 0.0) {
-        let depth = force.depth(bit);
-        let distance = |node: &usize| (context.nodes[*node].measured_depth - depth).abs();
-        let node = (0..context.nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let node = nearest_node(context.nodes, force.depth(bit));
         nodes.push(node);
         signals.push(Signal::new(force, context.drive.nominal_speed(), context.frames[node].low_side_angle));
     }

@@ -147,14 +147,7 @@ impl StringMesh {
 
     /// Index (from 0) of the node nearest to a measured depth \[m\]; of two equally near, the upper one.
     pub fn nearest_node(&self, measured_depth: f64) -> usize {
-        let below = self.nodes.partition_point(|node| node.measured_depth < measured_depth);
-        if below == 0 {
-            return 0;
-        }
-        let Some(lower) = self.nodes.get(below) else { return self.nodes.len() - 1 };
-        let upper = &self.nodes[below - 1];
-        let upper_is_nearer = measured_depth - upper.measured_depth <= lower.measured_depth - measured_depth;
-        if upper_is_nearer { below - 1 } else { below }
+        nearest_node(&self.nodes, measured_depth)
     }
 
     /// Index (from 0) of a chosen node, or `None` if the string has no such number or depth.
@@ -171,6 +164,18 @@ impl StringMesh {
             }
         }
     }
+}
+
+/// Index (from 0) of the node nearest to a measured depth \[m\]; of two equally near, the upper one.
+pub(crate) fn nearest_node(nodes: &[MeshNode], measured_depth: f64) -> usize {
+    let below = nodes.partition_point(|node| node.measured_depth < measured_depth);
+    if below == 0 {
+        return 0;
+    }
+    let Some(lower) = nodes.get(below) else { return nodes.len() - 1 };
+    let upper = &nodes[below - 1];
+    let upper_is_nearer = measured_depth - upper.measured_depth <= lower.measured_depth - measured_depth;
+    if upper_is_nearer { below - 1 } else { below }
 }
 
 /// Refuses places above the top or below the end of the string.

@@ -10,4 +10,5 @@ pub mod well;
 pub use boundaries::{ElementKind, SNAP_FRACTION};
 pub(crate) use boundaries::{UniformPart, stretches};
 pub use error::{MAX_ELEMENTS, MeshError};
+pub(crate) use mesh::nearest_node;
 pub use mesh::{MeshElement, MeshNode, NodeUnbalance, StringMesh};

@@ -8,7 +8,7 @@ use drillsweep_scenario::{
 };
 
 use super::report::Report;
-use super::string::has_place;
+use super::string::{MOST_EXCITATIONS, has_place};
 
 /// Largest aggressiveness of a bit; fixed cutters in soft rock reach 2.
 const LARGEST_AGGRESSIVENESS: f64 = 10.0;
@@ -37,9 +37,6 @@ const LARGEST_FACTOR: f64 = 10.0;
 /// Time constants of the torque filter of Z-torque \[s\].
 const TIME_CONSTANTS: RangeInclusive<f64> = 0.01..=1000.0;
 
-/// Largest number of excitations.
-const MOST_EXCITATIONS: usize = 64;
-
 /// Largest amplitude of a force \[N\].
 const LARGEST_FORCE: f64 = 1e8;
 
@@ -56,10 +53,10 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
     check_bit(report, scenario);
     check_top_drive(report, &scenario.top_drive, &scenario.operation);
     report.require(
-        scenario.excitation.len() <= MOST_EXCITATIONS,
-        "excitation",
-        format!("{} forces", scenario.excitation.len()),
-        format!("must be at most {MOST_EXCITATIONS} forces"),
+        scenario.top_drive.kind != TopDriveKind::ZTorque || !scenario.recording.stability,
+        "recording.stability",
+        "true",
+        "modes do not hold the torque filter of z_torque: with it `recording.stability` must be false",
     );
     for (i, force) in scenario.excitation.iter().enumerate().take(MOST_EXCITATIONS) {
         check_excitation(report, &format!("excitation[{i}]"), force, scenario);
@@ -336,6 +333,11 @@ mod tests {
             scenario.operation.top = TopCondition::Continues;
         };
         problem("top_drive.kind", open);
+        let judged = |scenario: &mut Scenario| {
+            with("top_drive.kind", json!("z_torque"))(scenario);
+            scenario.recording.stability = true;
+        };
+        problem("recording.stability", judged);
         problem("excitation[0].above_bit", shaken(json!({ "measured_depth": 10.0 })));
         problem("excitation[0]", shaken(json!({ "above_bit": null })));
         problem("excitation[0].per_revolution", shaken(json!({ "per_revolution": 3.0 })));

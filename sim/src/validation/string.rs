@@ -44,6 +44,12 @@ const STIFFEST_SOLID: f64 = 1.5e12;
 /// Largest make-up torque \[N m\]: that of the largest connections is some 200 kN m.
 const LARGEST_MAKE_UP_TORQUE: f64 = 1e6;
 
+/// Largest number of gauges, and of unbalance masses: one every ten metres of the longest wells.
+const MOST_PLACES: usize = 1000;
+
+/// Largest number of excitations.
+pub(super) const MOST_EXCITATIONS: usize = 64;
+
 /// Checks the string of a scenario as it is written, and as it is in the hole; returns its mesh if there is one.
 pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<StringMesh> {
     material(report, "string.material", &scenario.string.material);
@@ -62,9 +68,26 @@ pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario
         has_place(report, &format!("string.unbalance[{i}]"), mass.measured_depth, mass.above_bit);
     }
     masses(report, scenario);
+    if !has_few_places(report, written) {
+        return None;
+    }
     let mesh = mesh(report, written, scenario)?;
     clearances(report, written, &mesh);
     Some(mesh)
+}
+
+/// Requires few enough places on the string; each is compared with the others, and has a node.
+fn has_few_places(report: &mut Report, written: &Scenario) -> bool {
+    let string = &written.string;
+    let lists = [
+        ("string.gauges", string.gauges.len(), MOST_PLACES),
+        ("string.unbalance", string.unbalance.len(), MOST_PLACES),
+        ("excitation", written.excitation.len(), MOST_EXCITATIONS),
+    ];
+    for (list, count, most) in lists {
+        report.require(count <= most, list, format!("{count} places"), format!("must have at most {most}"));
+    }
+    lists.iter().all(|(_, count, most)| count <= most)
 }
 
 /// Requires that a place is given in one way.
@@ -473,6 +496,13 @@ mod tests {
     use drillsweep_scenario::{Gauge, Material, Mesh, NodeChoice, Scenario, UnbalanceMass, WallLaw};
 
     use super::super::report::testing::{problem, problems, warnings};
+    use super::MOST_PLACES;
+
+    #[test]
+    fn places_are_counted_before_they_are_compared() {
+        problem("string.gauges", |s| s.string.gauges = vec![Gauge::at(100.0, 1e-4); MOST_PLACES + 1]);
+        problem("string.unbalance", |s| s.string.unbalance = vec![s.string.unbalance[0]; MOST_PLACES + 1]);
+    }
 
     #[test]
     fn material_constants_are_physical() {

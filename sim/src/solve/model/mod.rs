@@ -116,7 +116,6 @@ impl Model {
         turning.effects = active_effects(&turning.scenario);
         turning.drive = Drive::new(&turning.scenario.operation);
         turning.rotation_speed = turning.drive.nominal_speed();
-        turning.speed_control = SpeedControl::of(&turning.scenario, &turning.effects);
         turning.forces = nodal_forces(&ForceContext {
             scenario: &turning.scenario,
             effects: &turning.effects,

@@ -246,13 +246,11 @@ impl Excitation {
                 return Err(ForcedError::Number { name, value });
             }
         }
-        let depths = model.mesh.depths();
-        let deepest = depths.last().copied().unwrap_or(0.0);
+        let deepest = model.mesh.length();
         if !(0.0..=deepest).contains(&measured_depth) {
             return Err(ForcedError::Place { measured_depth, deepest });
         }
-        let distance = |node: &usize| (depths[*node] - measured_depth).abs();
-        Ok((0..depths.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0))
+        Ok(model.mesh.nearest_node(measured_depth))
     }
 }
 

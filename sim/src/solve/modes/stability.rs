@@ -10,6 +10,7 @@ use super::arnoldi::Eigenpair;
 use super::mode::{Completeness, Mode, ModeKind, ModeSearch, ModesError, limit_of_bit};
 use super::pencil::{Pencil, add_contact, times};
 use super::walk::{Found, eigenpairs, uncounted_eigenpairs};
+use crate::force::bit_rock::WeakeningTorque;
 use crate::force::contact::sliding_tangent;
 use crate::math::dof::{U, V};
 use crate::math::linalg::BlockTridiagonal;
@@ -231,7 +232,7 @@ impl Stability {
                     growing_modes: growing.count(),
                 }
             }),
-            includes_bit: model.effects.bit_rock,
+            includes_bit: WeakeningTorque::of(&model.scenario, &model.effects).is_some(),
         }
     }
 

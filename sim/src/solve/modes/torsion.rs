@@ -152,7 +152,8 @@ struct Chain {
 impl Chain {
     fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         let effects = &model.effects;
-        let is_excited = effects.contact && effects.friction_torque || effects.bit_rock;
+        let torque_on_bit = WeakeningTorque::of(&model.scenario, effects);
+        let is_excited = effects.contact && effects.friction_torque || torque_on_bit.is_some();
         if !(effects.torsion && is_excited) || model.released_in_motion(0)[THETA_Z] {
             return None;
         }
@@ -172,7 +173,7 @@ impl Chain {
             stiffness_to_next: zero.clone(),
             rubbing: zero,
             rayleigh,
-            includes_bit: effects.bit_rock,
+            includes_bit: torque_on_bit.is_some(),
         };
         for (below, element) in model.elements.iter().enumerate() {
             let section = element.beam.section();
@@ -203,9 +204,7 @@ impl Chain {
             }
             chain.rubbing[e] += lower;
         }
-        if let (Some(torque), Some(bit)) =
-            (WeakeningTorque::of(&model.scenario, effects), chain.rubbing.last_mut())
-        {
+        if let (Some(torque), Some(bit)) = (torque_on_bit, chain.rubbing.last_mut()) {
             let [_, slope] = torque.change(0.0);
             *bit -= slope;
         }

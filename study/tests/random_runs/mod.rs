@@ -130,6 +130,7 @@ fn statics_cause(error: &StaticsError) -> &'static str {
     match error {
         StaticsError::NotConverged { .. } => "no equilibrium",
         StaticsError::Singular(_) => "singular tangent",
+        StaticsError::OutsideHole { .. } => "no equilibrium in the hole",
         StaticsError::Mud { .. } => "mud without a flow",
         StaticsError::HydraulicsNotConverged { .. } => "equilibrium of string and mud not converged",
     }

@@ -56,15 +56,6 @@ const BELOW_RK4_LIMIT: f64 = 0.95;
 /// Longest time \[s\] that RK4 advances at once, so that loads are observed as often as by the other methods.
 const RK4_REACH: f64 = 1e-3;
 
-/// Distance from the axis in hole radii at which a run has diverged, with a wall. A node there is at least a whole hole radius deep in the rock: the
-/// law's spring, of 1e7 N/m in the base case, would push with 1e6 N, the weight of 3.7 km of its drillpipe; sound runs have
-/// penetrations of millimetres.
-const FARTHEST_IN_HOLE: f64 = 2.0;
-
-/// The same without a wall: the string may swing freely, within the theory of small rotations. In a hole of 0.2 m these are 10 m; a
-/// half wave of that height along 200 m has a slope of 0.16, whose square, which the theory neglects, is 2.5 % of one.
-const FARTHEST_WITHOUT_WALL: f64 = 100.0;
-
 /// A run that solves for D degrees of freedom a node.
 pub(super) struct Run<'m, const D: usize> {
     model: &'m Model,
@@ -654,8 +645,7 @@ impl<'m, const D: usize> Run<'m, D> {
     fn check_bounds(&mut self) -> Result<(), TransientError> {
         let state = &self.progress.state;
         let hole_radius = 0.5 * self.model.scenario.well.widest_hole();
-        let farthest = if self.model.effects.contact { FARTHEST_IN_HOLE } else { FARTHEST_WITHOUT_WALL };
-        let bound = farthest * hole_radius;
+        let bound = self.model.farthest();
         let (mut fastest, mut highest_speed) = (self.fastest, 0.0);
         // A solve spreads a non-finite value over the whole string; it arose at the fastest node.
         if !state.displacement.is_finite() || !state.velocity.is_finite() {

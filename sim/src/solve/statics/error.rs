@@ -25,6 +25,18 @@ pub enum StaticsError {
     /// The tangent broke down.
     #[error("the tangent stiffness is singular at node {}", .0.row + 1)]
     Singular(#[from] SingularBlock),
+    /// Forces balance in positions outside the hole only, which belong to the equations and not to a string.
+    #[error(
+        "no equilibrium in the hole: forces balance with node {node} at {radius:.3e} m from the axis, beyond {farthest:.3e} m"
+    )]
+    OutsideHole {
+        /// Node farthest from the axis, from 1.
+        node: usize,
+        /// Its distance \[m\].
+        radius: f64,
+        /// Distance beyond which a node is outside \[m\].
+        farthest: f64,
+    },
     /// The flow past the string has no solution.
     #[error("the mud at node {node}: {error}")]
     Mud {
@@ -52,7 +64,7 @@ impl StaticsError {
     pub fn node(&self) -> usize {
         match self {
             Self::NotConverged { node, .. } | Self::Mud { node, .. } => *node,
-            Self::HydraulicsNotConverged { node, .. } => *node,
+            Self::OutsideHole { node, .. } | Self::HydraulicsNotConverged { node, .. } => *node,
             Self::Singular(block) => block.row + 1,
         }
     }
@@ -61,7 +73,7 @@ impl StaticsError {
     pub(super) fn is_open(&self) -> bool {
         match self {
             Self::NotConverged { overload, .. } => overload.is_none(),
-            Self::Singular(_) | Self::HydraulicsNotConverged { .. } => true,
+            Self::Singular(_) | Self::OutsideHole { .. } | Self::HydraulicsNotConverged { .. } => true,
             Self::Mud { .. } => false,
         }
     }

@@ -8,8 +8,8 @@
 
 use super::hydraulics::Sections;
 use super::newton::{
-    CONTACT_DOFS, Contacts, ElementContact, LAST_ITERATIONS, NewtonOutcome, NodeContact, WallAtRest, largest,
-    last_step, linearise_with, tributary_lengths,
+    CONTACT_DOFS, Contacts, ElementContact, LAST_ITERATIONS, NewtonOutcome, NodeContact, WallAtRest,
+    check_in_hole, largest, last_step, linearise_with, tributary_lengths,
 };
 use super::path::{self, Growth, Point, add};
 use crate::force::contact::{
@@ -184,6 +184,7 @@ impl Growth for Homotopy<'_> {
                 return None;
             }
             if longest <= last_step(displacement) {
+                check_in_hole(self.model, displacement).ok()?;
                 return Some(NewtonOutcome { iterations: iteration, residual: largest(&residual) });
             }
         }

@@ -101,6 +101,7 @@ pub(super) fn solve(
             break;
         }
         if longest <= last_step(displacement) && nodes.iter().all(|node| node.spring == 0.0) {
+            check_in_hole(model, displacement)?;
             return Ok(NewtonOutcome { iterations: iteration, residual: unbalanced });
         }
     }
@@ -192,10 +193,23 @@ pub(super) fn finish(
             return None;
         }
         if largest(&step) <= last_step(displacement) {
+            check_in_hole(model, displacement).ok()?;
             return Some(NewtonOutcome { iterations: iteration, residual: unbalanced });
         }
     }
     None
+}
+
+/// Refuses positions of the string outside the hole. Without a wall it may sag to anywhere.
+pub(super) fn check_in_hole(model: &Model, displacement: &[[f64; DOFS]]) -> Result<(), StaticsError> {
+    let farthest = model.farthest();
+    let radii = displacement.iter().map(|at| at[U].hypot(at[V])).enumerate();
+    match radii.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((node, radius)) if model.effects.contact && radius > farthest => {
+            Err(StaticsError::OutsideHole { node: node + 1, radius, farthest })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The last step of Newton's method next to an equilibrium at `displacement` \[m, rad\].

@@ -414,7 +414,8 @@ fn rk4_growth(ratio: f64, reach: f64) -> f64 {
     (1..=4).rev().fold(Complex::from(1.0), |sum, k| 1.0 + sum * z / f64::from(k)).norm()
 }
 
-/// The largest eigenvalue of a matrix with `closed` added at every node in the wall, over the mass.
+/// Modulus of the largest eigenvalue of a matrix with `closed` added at every node in the wall, over the mass. The eigenvalue may be negative in an unstable
+/// equilibrium: its root is then a rate of growth, which bounds steps as a frequency does.
 fn largest_ratio(
     model: &Model,
     system: &DynamicSystem,
@@ -466,7 +467,7 @@ fn largest_ratio(
             *x = product / norm;
         }
     }
-    Ok(largest)
+    Ok(largest.abs())
 }
 
 fn mass_norm(mass: &BlockTridiagonal, x: &[[f64; DOFS]]) -> f64 {
@@ -481,7 +482,25 @@ fn dot(a: &[[f64; DOFS]], b: &[[f64; DOFS]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use drillsweep_scenario::preset;
+
     use super::*;
+    use crate::solve::statics::Equilibrium;
+
+    #[test]
+    fn the_limit_of_an_unstable_string_is_bounded_by_its_growth() {
+        let mut scenario = preset("paper-200m").unwrap();
+        scenario.contact.stiffness = 1.0;
+        let model = Model::new(&scenario).unwrap();
+        // So much compression that the most negative eigenvalue of the stiffness has the largest modulus.
+        let tension = vec![-1e11; model.elements.len()];
+        let system = model.dynamic_system(&Equilibrium { tension, ..Equilibrium::unloaded(&model) });
+        let limit = rk4_limit(&model, &system).unwrap();
+        // A wave number k grows with k sqrt(|T| / m): at most with that of an element.
+        let [mass, length] = [70.0, 0.3];
+        let growth = std::f64::consts::PI / length * (1e11_f64 / mass).sqrt();
+        assert!(limit > 0.5 / growth && limit < 2.0 * RK4_REACH / growth, "{limit} with {growth}");
+    }
 
     /// Largest growth in a step of RK4 of `m x'' + c x' + k x = 0`, from the eigenvalues of its step matrix.
     fn growth(frequency: f64, decay: f64, step: f64) -> f64 {

@@ -27,6 +27,10 @@ TALLER = {
     "compare-string": 1500,
 }
 """Pictures whose lower part is what they are taken for."""
+POINT = [
+    *("profiles", "motion", "spectrogram", "string", "well", "energy", "hydraulics", "drag", "forced", "about"),
+]
+"""Views of a point."""
 COMPARED = [
     *("profiles", "orbit", "history", "rotation", "spectrum", "statistics", "spectrogram", "bit", "string", "contacts"),
     *("well", "energy", "modes", "effects", "accuracy", "cost"),
@@ -49,7 +53,7 @@ def views(sweep: str, other: str, failed: str) -> dict[str, str]:
     links["sweep-window"] += f"&limits={LIMITS}"
     links["sweep-failures"] = f"#/sweeps/{failed}?view=failures"
     links["sweep-difference"] = f"#/sweeps/{sweep}?view=difference&with={other}&colour=orbit_radius_rms_57_7m"
-    for view in ("profiles", "motion", "spectrogram", "string", "well", "energy", "hydraulics", "about"):
+    for view in POINT:
         links[f"point-{view}"] = f"#/sweeps/{sweep}/points/1?view={view}&node=57.7m"
     links["point-profiles"] += "&cursor=123.5"
     points = f"{sweep}:1,{sweep}:4,{other}:4"

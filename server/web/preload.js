@@ -43,6 +43,7 @@ const preload = (() => {
       well: "point/well.js",
       energy: "point/energy.js",
       hydraulics: "point/hydraulics.js",
+      drag: "point/drag.js",
       forced: "point/forced.js",
       about: "point/about.js",
     },

@@ -1,4 +1,4 @@
-// A point: what it is, and its profiles, motion, well, energy, hydraulics, forced response, and what it cost.
+// A point: what it is, and its profiles, motion, well, energy, hydraulics, torque and drag, forced response, and what it cost.
 
 import { get, Problem } from "../data/api.js";
 import { Biases } from "../data/biases.js";
@@ -30,6 +30,7 @@ const PARTS = [
   ["well", "Well", async () => (await import("./well.js")).well],
   ["energy", "Energy", async () => (await import("./energy.js")).energy],
   ["hydraulics", "Hydraulics", async () => (await import("./hydraulics.js")).hydraulics],
+  ["drag", "Torque and drag", async () => (await import("./drag.js")).drag],
   ["forced", "Forced response", async () => (await import("./forced.js")).forced],
   ["about", "Effects, accuracy, downloads", async () => (await import("./about.js")).about],
 ];
@@ -38,7 +39,7 @@ const PARTS = [
 const POLL_MS = 3000;
 
 /** Views whose element is not made of panels. */
-const IN_PANEL = ["profiles", "well", "energy", "hydraulics", "forced"];
+const IN_PANEL = ["profiles", "well", "energy", "hydraulics", "drag", "forced"];
 
 /** Sweep, number and path of a point. @typedef {{sweep: any, ordinal: string, path: string, query: URLSearchParams}} Place */
 

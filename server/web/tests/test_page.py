@@ -30,7 +30,7 @@ from browsing import (
 from drillsweep import Axis, Client, Outputs, Sweep
 from service import SHORT, Service, make_token, revoke_token, tokens_of
 
-POINT_VIEWS = ["profiles", "motion", "well", "energy", "hydraulics", "forced", "about"]
+POINT_VIEWS = ["profiles", "motion", "well", "energy", "hydraulics", "drag", "forced", "about"]
 
 
 def test_a_name_of_markup_is_text(opened: Opens, named: Sweep) -> None:

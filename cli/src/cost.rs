@@ -11,10 +11,11 @@ use drillsweep_scenario::Scenario;
 use drillsweep_sim::validation::validate;
 use drillsweep_study::cost::CostReport;
 use drillsweep_table::csv;
-use drillsweep_worker::{calibrate, cost_study, study_cpu_time, study_time};
+use drillsweep_worker::{cost_study, study_cpu_time, study_time};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 
+use crate::machine_speed::{SpeedArguments, machine_speed};
 use crate::print;
 use crate::scenario::ChangeArguments;
 use crate::simulate::with_progress;
@@ -59,6 +60,8 @@ pub(crate) struct CostArguments {
     /// a cost.csv of all next to them.
     #[arg(long, value_name = "DIRECTORY")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    speed: SpeedArguments,
     /// Measure of the chart: orbit_size, radius_deviation or trajectory; absent means the first of them that has an error.
     #[arg(long)]
     measure: Option<Measure>,
@@ -84,7 +87,7 @@ pub(crate) fn cost(arguments: &CostArguments) -> anyhow::Result<()> {
         .iter()
         .map(|name| studied(arguments, name).with_context(|| name.clone()))
         .collect::<Result<_, _>>()?;
-    announce(&scenarios)?;
+    announce(&scenarios, &arguments.speed)?;
     let pool =
         ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
     let run = |scenario: &Scenario| {
@@ -162,9 +165,9 @@ fn studied(arguments: &CostArguments, name: &str) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Logs the expected cost of the studies, from some short runs on this machine.
-fn announce(scenarios: &[Scenario]) -> anyhow::Result<()> {
-    let speed = calibrate()?;
+/// Logs the expected cost of the studies, from the speed of this machine.
+fn announce(scenarios: &[Scenario], arguments: &SpeedArguments) -> anyhow::Result<()> {
+    let speed = machine_speed(arguments)?.speed;
     for scenario in scenarios {
         let (cpu_time, adaptive) = study_cpu_time(scenario, &speed)?;
         let others = match adaptive {

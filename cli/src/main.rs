@@ -14,6 +14,7 @@ mod health;
 mod help;
 mod hydraulics;
 mod import;
+mod machine_speed;
 mod migrate;
 mod modes;
 mod plan;

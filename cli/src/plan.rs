@@ -11,10 +11,10 @@ use drillsweep_sim::solve::step::step_problem;
 use drillsweep_sim::validation::validate;
 use drillsweep_study::footprint::Footprint;
 use drillsweep_study::plan::{Plan, PlannedAccuracy};
-use drillsweep_worker::calibrate;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
+use crate::machine_speed::{SpeedArguments, machine_speed};
 use crate::print;
 use crate::scenario::ScenarioArguments;
 use crate::submit::megabytes;
@@ -28,6 +28,8 @@ pub(crate) struct PlanArguments {
     /// commas.
     #[arg(long, value_parser = UnitChoice::parse, default_value = "si", hide_default_value = true, conflicts_with = "json")]
     units: UnitChoice,
+    #[command(flatten)]
+    speed: SpeedArguments,
     /// Print the plan as JSON, in SI units.
     #[arg(long)]
     json: bool,
@@ -36,7 +38,7 @@ pub(crate) struct PlanArguments {
 /// Time between two drawings of the part in work.
 const REDRAWN: Duration = Duration::from_millis(200);
 
-/// Prints the plan of a scenario, with processor times from some short runs on this machine.
+/// Prints the plan of a scenario, with processor times from the speed of this machine.
 pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
     for warning in validate(&scenario)? {
@@ -55,21 +57,22 @@ pub(crate) fn plan(arguments: &PlanArguments) -> anyhow::Result<()> {
     let start = Instant::now();
     begin("speed of this machine");
     bar.enable_steady_tick(REDRAWN);
-    let speed = calibrate()?;
+    let known = machine_speed(&arguments.speed)?;
     let measured = start.elapsed();
-    let plan = Plan::new(&scenario, Some(&speed))?;
+    let plan = Plan::new(&scenario, Some(&known.speed))?;
     let plan = plan.with_equilibrium_by_parts(&scenario, |part| begin(part.name()));
     let planned = start.elapsed() - measured;
     bar.finish_and_clear();
     if arguments.json {
-        print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": speed }))?);
+        print(&serde_json::to_string_pretty(&json!({ "plan": plan, "machine_speed": known.speed }))?);
     } else {
         print(plan_text(&plan, &arguments.units)?.trim_end());
-        print(&format!(
-            "this plan: {:.1} s to measure the machine, {:.1} s for the equilibrium and what follows from it",
-            measured.as_secs_f64(),
-            planned.as_secs_f64()
-        ));
+        let speed = match known.kept_since {
+            None => format!("{:.1} s to measure the machine", measured.as_secs_f64()),
+            Some(time) => format!("speed of the machine as measured on {}", time.strftime("%Y-%m-%d")),
+        };
+        let planned = planned.as_secs_f64();
+        print(&format!("this plan: {speed}, {planned:.1} s for the equilibrium and what follows from it"));
     }
     Ok(())
 }

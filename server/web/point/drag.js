@@ -264,33 +264,27 @@ function depthBoxes({ depths }, change, refuse) {
   const { symbol, size } = inputUnit("bit_depth");
   // A field that is not edited keeps its depth, of which it shows millimetres.
   const edited = { ...depths };
-  const box = (/** @type {string} */ text, /** @type {keyof Depths} */ name, /** @type {number} */ unit) => {
+  const box = (/** @type {string} */ text, /** @type {keyof Depths} */ name) => {
+    const scale = name === "count" ? 1 : size;
     const input = h("input", {
       type: "number",
       step: "any",
       min: 0,
-      value: Number((depths[name] / unit).toFixed(3)),
-      "aria-label": text,
+      value: Number((depths[name] / scale).toFixed(3)),
       onchange: () => {
-        edited[name] = Number(input.value) * unit;
+        edited[name] = Number(input.value) * scale;
         const bit = `${edited.from}:${edited.to}:${edited.count}`;
         if (depthsOf(bit)) change({ bit });
         else refuse("Bit depths must be above 0, the shallowest first, and one or more.");
       },
     });
-    return input;
+    return h("label", { class: "field" }, h("span", {}, text), input);
   };
-  return h(
-    "span",
-    { class: "field" },
-    h("span", {}, `Bit depth [${symbol}]`),
-    box("Shallowest bit depth", "from", size),
-    " to ",
-    box("Deepest bit depth", "to", size),
-    " at ",
-    box("Number of bit depths", "count", 1),
-    " depths",
-  );
+  return [
+    box(`Shallowest bit depth [${symbol}]`, "from"),
+    box(`Deepest bit depth [${symbol}]`, "to"),
+    box("Number of bit depths", "count"),
+  ];
 }
 
 /**
@@ -306,7 +300,6 @@ function quantityBox(text, quantity, value, onChange) {
     type: "number",
     step: "any",
     value: value === null ? "" : Number((value / size).toPrecision(12)),
-    "aria-label": text,
     onchange: () => onChange(Number(box.value) * size),
   });
   return h("label", { class: "field" }, h("span", {}, `${text} [${symbol}]`), box);

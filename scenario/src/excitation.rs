@@ -3,16 +3,22 @@
 use serde::{Deserialize, Serialize};
 
 /// A force or torque at one place of the string that changes in time, harmonic or random in a band of frequencies (docs/model/drive.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExcitingForce {
-    /// Measured depth \[m\], on the string in the hole; absent with `above_bit`. A node is put there. It does not move with the bit.
+    /// Measured depth \[m\], on the string in the hole; absent with `above_bit` or `section`. A node is put there. It does not move with the bit.
     #[serde(default)]
     pub measured_depth: Option<f64>,
-    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of both is given. It moves with the
+    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of `measured_depth`, `above_bit` and `section` is given. It moves with the
     /// bit.
     #[serde(default)]
     pub above_bit: Option<f64>,
+    /// Name of a section of the string, in place of `measured_depth`; it is the name of one section only. The place moves with the section, whatever is inserted elsewhere.
+    #[serde(default)]
+    pub section: Option<String>,
+    /// Distance above the lower end of that section \[m\], 0 to its length, all of its pieces together; absent means 0.
+    #[serde(default)]
+    pub above_end: Option<f64>,
     /// Direction: `axial`, `torsional`, `lateral_low_side` (towards the low side of the hole), `lateral_across` (a right angle from it, clockwise seen from above) or
     /// `lateral_rotating` (a force of constant size that turns clockwise).
     pub direction: ExcitationDirection,
@@ -54,11 +60,4 @@ pub enum ExcitationDirection {
     LateralAcross,
     /// A force of constant size that turns clockwise from the low side.
     LateralRotating,
-}
-
-impl ExcitingForce {
-    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN without a place, which validation refuses.
-    pub fn depth(&self, bit: f64) -> f64 {
-        crate::in_hole::depth(self.measured_depth, self.above_bit, bit)
-    }
 }

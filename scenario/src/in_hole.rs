@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use drillsweep_quantity::Place;
 
-use crate::{DrillString, Gauge, NodeChoice, Scenario, Section, SectionOrder, UnbalanceMass};
+use crate::named_section::{NamedSection, NamedSections};
+use crate::{DrillString, ExcitingForce, Gauge, NodeChoice, Scenario, Section, SectionOrder, UnbalanceMass};
 
 /// Difference of depths that rounding makes \[m\].
 pub(crate) const SAME_DEPTH: f64 = 1e-6;
@@ -36,22 +37,28 @@ impl PlacedSection<'_> {
 
 impl Scenario {
     /// The same scenario written with the string that is in the hole: from the top, without the sections and pieces above it, and with the measured depths of
-    /// gauges, unbalance masses and excitations; with the torque of the bit in place of its aggressiveness. `bit_depth` remains only if the first piece is partly above.
+    /// gauges, unbalance masses and excitations (of those by a section only if one section has its name); with the torque of the bit in place of its aggressiveness. `bit_depth` remains only if the first piece is partly above.
     ///
     /// A bit depth that is not on the string, which validation refuses, leaves the whole string.
     pub fn in_hole(&self) -> Cow<'_, Self> {
         let string = &self.string;
-        let mut heights = string.gauges.iter().map(|gauge| gauge.above_bit);
-        let mut of_masses = string.unbalance.iter().map(|mass| mass.above_bit);
+        let places = || {
+            let gauges = string.gauges.iter().map(Gauge::place);
+            let masses = string.unbalance.iter().map(UnbalanceMass::place);
+            gauges.chain(masses).chain(self.excitation.iter().map(ExcitingForce::place))
+        };
         if string.order == SectionOrder::FromTop
             && string.bit_depth.is_none()
-            && heights.all(|above| above.is_none())
-            && of_masses.all(|above| above.is_none())
             && self.bit.aggressiveness.is_none()
-            && self.excitation.iter().all(|force| force.above_bit.is_none())
+            && places().all(|place| place.above_bit.is_none() && place.section.is_none())
         {
             return Cow::Borrowed(self);
         }
+        let named = if places().any(|place| place.section.is_some()) {
+            string.named_sections()
+        } else {
+            NamedSections::default()
+        };
         let mut scenario = self.clone();
         (scenario.operation.torque_on_bit, scenario.bit.aggressiveness) = (self.torque_on_bit(), None);
         let string = &mut scenario.string;
@@ -61,15 +68,19 @@ impl Scenario {
         }
         string.leave_out_above_hole();
         let bit = string.depth_of_bit();
-        for gauge in string.gauges.iter_mut().filter(|gauge| gauge.above_bit.is_some()) {
-            (gauge.measured_depth, gauge.above_bit) = (Some(gauge.depth(bit)), None);
+        macro_rules! put_at_depths {
+            ($placed:expr) => {
+                for placed in $placed.iter_mut() {
+                    if let Some(depth) = placed.place().moving_depth(bit, &named) {
+                        placed.measured_depth = Some(depth);
+                        (placed.above_bit, placed.section, placed.above_end) = (None, None, None);
+                    }
+                }
+            };
         }
-        for mass in string.unbalance.iter_mut().filter(|mass| mass.above_bit.is_some()) {
-            (mass.measured_depth, mass.above_bit) = (Some(mass.depth(bit)), None);
-        }
-        for force in scenario.excitation.iter_mut().filter(|force| force.above_bit.is_some()) {
-            (force.measured_depth, force.above_bit) = (Some(force.depth(bit)), None);
-        }
+        put_at_depths!(string.gauges);
+        put_at_depths!(string.unbalance);
+        put_at_depths!(scenario.excitation);
         Cow::Owned(scenario)
     }
 }
@@ -94,6 +105,13 @@ impl DrillString {
             *depth += section.whole_length();
             Some(PlacedSection { index, section, top, bottom: *depth })
         })
+    }
+
+    /// Sections by their names.
+    pub fn named_sections(&self) -> NamedSections<'_> {
+        NamedSections::new(self.placed_sections().map(|PlacedSection { index, section, bottom, .. }| {
+            (section.name.as_str(), NamedSection { index, bottom, length: section.whole_length() })
+        }))
     }
 
     /// Sections from the top down, with their indices.
@@ -146,32 +164,86 @@ impl DrillString {
     }
 }
 
+/// Fields by which a place on the string is given: `measured_depth`, `above_bit`, or `section` with `above_end`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WrittenPlace<'p> {
+    /// Measured depth \[m\].
+    pub measured_depth: Option<f64>,
+    /// Distance above the lower end of the bit \[m\].
+    pub above_bit: Option<f64>,
+    /// Name of a section.
+    pub section: Option<&'p str>,
+    /// Distance above the lower end of that section \[m\].
+    pub above_end: Option<f64>,
+}
+
+impl WrittenPlace<'_> {
+    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN of a place by its section, and without a place, which validation refuses.
+    fn depth(&self, bit: f64) -> f64 {
+        self.measured_depth.or(self.above_bit.map(|above| above_the(bit, above))).unwrap_or(f64::NAN)
+    }
+
+    /// Measured depth \[m\] of a place by its section, negative above the hole; absent if no section has the name, or several have it.
+    pub fn depth_by_section(&self, sections: &NamedSections<'_>) -> Option<f64> {
+        let section = sections.only(self.section?)?;
+        Some(above_the(section.bottom, self.above_end.unwrap_or(0.0)))
+    }
+
+    /// Measured depth \[m\] of a place that moves with the bit or with a section; absent by measured depth, and of a section that is not found.
+    fn moving_depth(&self, bit: f64, sections: &NamedSections<'_>) -> Option<f64> {
+        match (self.measured_depth, self.above_bit) {
+            (_, Some(_)) => Some(self.depth(bit)),
+            (Some(_), None) => None,
+            (None, None) => self.depth_by_section(sections),
+        }
+    }
+}
+
+macro_rules! placed_on_string {
+    ($($type:ident),*) => {$(
+        impl $type {
+            /// Fields by which its place is given.
+            pub fn place(&self) -> WrittenPlace<'_> {
+                WrittenPlace {
+                    measured_depth: self.measured_depth,
+                    above_bit: self.above_bit,
+                    section: self.section.as_deref(),
+                    above_end: self.above_end,
+                }
+            }
+
+            /// Measured depth \[m\] with the bit at a depth \[m\]; NaN of a place by its section, which [`Scenario::in_hole`] resolves, and without a
+            /// place, which validation refuses.
+            pub fn depth(&self, bit: f64) -> f64 {
+                self.place().depth(bit)
+            }
+        }
+    )*};
+}
+
+placed_on_string!(Gauge, UnbalanceMass, ExcitingForce);
+
 impl Gauge {
     /// Gauge at a measured depth \[m\] with a clearance \[m\].
     pub fn at(measured_depth: f64, clearance: f64) -> Self {
-        Self { measured_depth: Some(measured_depth), above_bit: None, clearance }
+        Self {
+            measured_depth: Some(measured_depth),
+            above_bit: None,
+            section: None,
+            above_end: None,
+            clearance,
+        }
     }
 
-    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN without a place, which validation refuses.
-    pub fn depth(&self, bit: f64) -> f64 {
-        depth(self.measured_depth, self.above_bit, bit)
+    /// Gauge at a distance above the bit \[m\] with a clearance \[m\].
+    pub fn above_bit(above_bit: f64, clearance: f64) -> Self {
+        Self { measured_depth: None, above_bit: Some(above_bit), section: None, above_end: None, clearance }
     }
 }
 
-impl UnbalanceMass {
-    /// Measured depth \[m\] with the bit at a depth \[m\]; NaN without a place, which validation refuses.
-    pub fn depth(&self, bit: f64) -> f64 {
-        depth(self.measured_depth, self.above_bit, bit)
-    }
-}
-
-pub(crate) fn depth(measured_depth: Option<f64>, above_bit: Option<f64>, bit: f64) -> f64 {
-    measured_depth.or(above_bit.map(|above| above_the(bit, above))).unwrap_or(f64::NAN)
-}
-
-/// Measured depth \[m\] at a distance above a bit, to a nanometre: lengths of sections add up to 3437.9999999999995 m, and a place must have one depth however it is written.
-fn above_the(bit: f64, above: f64) -> f64 {
-    ((bit - above) * 1e9).round() / 1e9
+/// Measured depth \[m\] at a distance above another one, to a nanometre: lengths of sections add up to 3437.9999999999995 m, and a place must have one depth however it is written.
+fn above_the(end: f64, above: f64) -> f64 {
+    ((end - above) * 1e9).round() / 1e9
 }
 
 impl NodeChoice {
@@ -230,7 +302,7 @@ mod tests {
     #[test]
     fn places_above_the_bit_move_with_it() {
         let mut scenario = with_bit_at(120.0);
-        scenario.string.gauges = vec![Gauge { above_bit: Some(34.5), measured_depth: None, clearance: 1e-3 }];
+        scenario.string.gauges = vec![Gauge::above_bit(34.5, 1e-3)];
         scenario.string.unbalance.truncate(1);
         (scenario.string.unbalance[0].measured_depth, scenario.string.unbalance[0].above_bit) =
             (None, Some(0.0));
@@ -239,6 +311,34 @@ mod tests {
         assert_eq!(found.string.unbalance[0].measured_depth, Some(120.0));
         scenario.string.bit_depth = None;
         assert_eq!(scenario.in_hole().string.gauges, [Gauge::at(165.5, 1e-3)]);
+    }
+
+    #[test]
+    fn places_by_section_move_with_it_and_not_with_others() {
+        let mut scenario = with_bit_at(120.0);
+        scenario.string.gauges.clear();
+        scenario.string.unbalance.truncate(1);
+        let mass = &mut scenario.string.unbalance[0];
+        (mass.measured_depth, mass.section, mass.above_end) = (None, Some("collars".to_owned()), Some(1.5));
+        let sections = &mut scenario.string.sections;
+        sections[2].name = "collars".to_owned();
+        let below: f64 = sections[3..].iter().map(Section::whole_length).sum();
+        let depth = |scenario: &Scenario| scenario.in_hole().string.unbalance[0].measured_depth;
+        let expected = ((120.0 - below - 1.5) * 1e9).round() / 1e9;
+        assert_eq!(depth(&scenario), Some(expected));
+        let mut longer = scenario.clone();
+        let sub =
+            Section { name: "sub".to_owned(), count: 1, length: 2.0, ..longer.string.sections[2].clone() };
+        longer.string.sections.insert(3, sub);
+        assert!((depth(&longer).unwrap() - (expected - 2.0)).abs() < 1e-9, "two metres further from the bit");
+        let mut from_bit = scenario.clone();
+        from_bit.string.sections.reverse();
+        from_bit.string.order = SectionOrder::FromBit;
+        assert_eq!(depth(&from_bit), Some(expected));
+        scenario.string.bit_depth = Some(below - 1.0);
+        assert_eq!(depth(&scenario), Some(-2.5), "above the hole");
+        scenario.string.sections[3].name = "collars".to_owned();
+        assert_eq!(depth(&scenario), None, "of two sections");
     }
 
     #[test]

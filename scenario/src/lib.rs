@@ -15,6 +15,7 @@ mod hole;
 mod hydraulics;
 mod in_hole;
 mod mesh;
+mod named_section;
 mod nearest;
 mod number;
 mod outputs;
@@ -39,8 +40,9 @@ pub use excitation::{ExcitationDirection, ExcitingForce};
 pub use failure::{FailureClass, PointError};
 pub use hole::{Hole, HoleSection};
 pub use hydraulics::{Hydraulics, PressureLosses};
-pub use in_hole::PlacedSection;
+pub use in_hole::{PlacedSection, WrittenPlace};
 pub use mesh::{ElementLengths, Mesh, MeshName, ScaledMesh, WrittenOutMesh};
+pub use named_section::{NamedSection, NamedSections, SectionNameError};
 pub use nearest::{nearest, unknown_preset};
 pub use outputs::{OrbitOutputs, Outputs};
 pub use preset::{PRESETS, preset};
@@ -269,17 +271,23 @@ fn one() -> u32 {
 
 /// A place at which the radial clearance is given instead of following from the diameters
 /// (a contact matter only: the mud flows past it as past the body, docs/model/mud.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gauge {
-    /// Measured depth \[m\], on the string in the hole; absent with `above_bit`. Within a twentieth of the target element length of another boundary
+    /// Measured depth \[m\], on the string in the hole; absent with `above_bit` or `section`. Within a twentieth of the target element length of another boundary
     /// it is moved there, with a warning. It does not move with the bit.
     #[serde(default)]
     pub measured_depth: Option<f64>,
-    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of both is given. It moves with the
+    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of `measured_depth`, `above_bit` and `section` is given. It moves with the
     /// bit.
     #[serde(default)]
     pub above_bit: Option<f64>,
+    /// Name of a section of the string, in place of `measured_depth`; it is the name of one section only. The place moves with the section, whatever is inserted elsewhere.
+    #[serde(default)]
+    pub section: Option<String>,
+    /// Distance above the lower end of that section \[m\], 0 to its length, all of its pieces together; absent means 0.
+    #[serde(default)]
+    pub above_end: Option<f64>,
     /// Radial clearance j0 \[m\], above 0 and at most the clearance of the body; usual 1e-4 to 3e-3. Smaller, the node is
     /// held nearly as in a bearing, its contact chatters and steps become short; larger, the bottom-hole assembly tilts and whirls
     /// more freely.
@@ -287,17 +295,23 @@ pub struct Gauge {
 }
 
 /// A mass off the axis, turning with the string (docs/model/motion.md).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnbalanceMass {
-    /// Measured depth \[m\], on the string in the hole; absent with `above_bit`; at the top node, which is held, a mass does nothing. Within a twentieth
+    /// Measured depth \[m\], on the string in the hole; absent with `above_bit` or `section`; at the top node, which is held, a mass does nothing. Within a twentieth
     /// of the target element length of another boundary it is moved there, with a warning. It does not move with the bit.
     #[serde(default)]
     pub measured_depth: Option<f64>,
-    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of both is given. It moves with the
+    /// Distance above the lower end of the bit \[m\], 0 to the depth of the bit, in place of `measured_depth`: one of `measured_depth`, `above_bit` and `section` is given. It moves with the
     /// bit.
     #[serde(default)]
     pub above_bit: Option<f64>,
+    /// Name of a section of the string, in place of `measured_depth`; it is the name of one section only. The place moves with the section, whatever is inserted elsewhere.
+    #[serde(default)]
+    pub section: Option<String>,
+    /// Distance above the lower end of that section \[m\], 0 to its length, all of its pieces together; absent means 0.
+    #[serde(default)]
+    pub above_end: Option<f64>,
     /// Mass m_u \[kg\], 0 or more. Only its product with the radius counts, usually 0.01 to 1 kg m in one place; the string's own
     /// mass is unchanged. The force is that product times the square of the speed of rotation: too small leaves friction alone to
     /// excite whirl, too large throws the string from wall to wall.

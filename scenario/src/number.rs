@@ -125,8 +125,8 @@ numbers!(Material: youngs_modulus, density, poissons_ratio; without grade);
 numbers!(Section: length, outer_diameter, inner_diameter, mass_per_length, stiffness_outer_diameter, stiffness_inner_diameter,
     blade_diameter, blade_above_end, tool_joint, material, make_up_torque; without name, kind, count, grade);
 numbers!(ToolJoint: length, outer_diameter, inner_diameter, material);
-numbers!(Gauge: measured_depth, above_bit, clearance);
-numbers!(UnbalanceMass: measured_depth, above_bit, mass, radius, phase_deg);
+numbers!(Gauge: measured_depth, above_bit, above_end, clearance; without section);
+numbers!(UnbalanceMass: measured_depth, above_bit, above_end, mass, radius, phase_deg; without section);
 numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pressure_drop, back_pressure;
     without regime, rotation_factor, viscosity_eccentricity);
 numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
@@ -134,8 +134,8 @@ numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_
 numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit, axial_speed, length_above; without top);
 numbers!(Bit: aggressiveness, static_ratio, weakening_speed, regularisation_speed; without law);
 numbers!(TopDrive: gain, frequency_hz, inertia, inertia_compensation, factor, time_constant; without kind, tuning);
-numbers!(ExcitingForce: measured_depth, above_bit, force, torque, frequency_hz, per_revolution, phase_deg, band_to_hz;
-    without direction, seed);
+numbers!(ExcitingForce: measured_depth, above_bit, above_end, force, torque, frequency_hz, per_revolution, phase_deg, band_to_hz;
+    without section, direction, seed);
 numbers!(ContactLaw: stiffness, damping, stiffness_per_length, damping_per_length, stiffness_sharpness, damping_sharpness,
     static_friction, dynamic_friction, friction_reference_speed; without law, adhesion);
 numbers!(RayleighDamping: mass_proportional, stiffness_proportional);

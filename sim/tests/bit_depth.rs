@@ -5,8 +5,10 @@ use std::f64::consts::FRAC_PI_4;
 use drillsweep_scenario::{
     NodeChoice, Scenario, Section, SectionKind, SurveyStation, ToolJoint, TopCondition, preset,
 };
+use drillsweep_sim::control::Control;
 use drillsweep_sim::key::canonical_json;
 use drillsweep_sim::solve::model::Model;
+use drillsweep_sim::solve::run::{Outcome, Transient};
 use drillsweep_sim::solve::soft_string::{DragCase, DragMode, DragSettings, SoftString};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::string::ElementKind;
@@ -304,6 +306,119 @@ fn whole_wells_are_the_same_by_distances_from_the_bit_and_by_depths() {
         by_depth.recording.nodes.clear();
         assert_eq!(canonical_json(&by_height), canonical_json(&by_depth), "{name}");
     }
+}
+
+/// The base case with a name for each section, and its gauges, masses and an excitation by section in place of measured depth.
+fn by_section(by_depth: &Scenario) -> Scenario {
+    let mut by_section = by_depth.clone();
+    for (i, section) in by_section.string.sections.iter_mut().enumerate() {
+        section.name = format!("component {i}");
+    }
+    let placed = |depth: f64| {
+        let mut sections = by_depth.string.placed_sections();
+        let found = sections.find(|placed| depth <= placed.bottom).expect("on the string");
+        (Some(format!("component {}", found.index)), Some(found.bottom - depth))
+    };
+    macro_rules! put_in_sections {
+        ($list:expr) => {
+            for one in $list.iter_mut() {
+                (one.section, one.above_end) = placed(one.measured_depth.take().expect("by measured depth"));
+            }
+        };
+    }
+    put_in_sections!(by_section.string.gauges);
+    put_in_sections!(by_section.string.unbalance);
+    put_in_sections!(by_section.excitation);
+    by_section
+}
+
+#[test]
+fn places_by_section_have_the_bits_of_their_depths() {
+    let force =
+        json!([{ "measured_depth": 150.0, "direction": "axial", "force": 1e4, "frequency_hz": 18.0 }]);
+    let mut by_depth =
+        preset("paper-200m").expect("shipped preset").with("excitation", force).expect("a field");
+    by_depth.duration = 0.05;
+    by_depth.recording.spectrum_windows = Some(Vec::new());
+    by_depth.recording.orbit_window = None;
+    let by_section = by_section(&by_depth);
+    let mut named = by_depth.clone();
+    for (to, from) in named.string.sections.iter_mut().zip(&by_section.string.sections) {
+        to.name.clone_from(&from.name);
+    }
+    assert_eq!(canonical_json(&by_section), canonical_json(&named), "one key");
+    let records = |scenario: &Scenario| {
+        let (model, equilibrium) = at_rest(scenario);
+        let run = Transient::new(&model, &equilibrium).expect("a run");
+        match run.run(&Control::new()).expect("a run") {
+            Outcome::Finished(records) => (equilibrium.displacement, records),
+            Outcome::Cancelled | Outcome::Suspended(..) => panic!("not finished"),
+        }
+    };
+    assert_eq!(records(&by_section), records(&by_depth));
+}
+
+#[test]
+fn a_place_by_section_stays_in_it_as_components_are_inserted() {
+    let scenario = by_section(&preset("paper-200m").expect("shipped preset"));
+    let mass = &scenario.string.unbalance[0];
+    let (name, above) = (mass.section.clone().expect("by section"), mass.above_end.expect("by section"));
+    let index = scenario.string.sections.iter().position(|section| section.name == name).expect("a section");
+    let mut longer = scenario.clone();
+    let sub = Section { count: 1, ..Section::plain(SectionKind::Collar, 1.5, 0.1651, 0.0714) };
+    longer.string.sections.insert(index + 1, sub);
+    longer.well.survey.last_mut().expect("has stations").measured_depth += 1.5;
+    for scenario in [&scenario, &longer] {
+        let (model, _) = at_rest(scenario);
+        let bottom =
+            scenario.string.placed_sections().find(|placed| placed.index == index).expect("there").bottom;
+        let masses = model.mesh.nodes.iter().filter(|node| !node.unbalance.is_empty());
+        let mut depths = masses.map(|node| node.measured_depth);
+        assert!(depths.any(|depth| (depth - (bottom - above)).abs() < 1e-9), "{bottom} m");
+    }
+}
+
+#[test]
+fn a_place_by_section_has_one_section_and_is_in_it() {
+    let problem = |change: &dyn Fn(&mut Scenario)| -> (String, String) {
+        let mut scenario = by_section(&preset("paper-200m").expect("shipped preset"));
+        change(&mut scenario);
+        let problems = validate(&scenario).expect_err("invalid").0;
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        (problems[0].path.clone(), problems[0].message.clone())
+    };
+    let unknown = problem(&|scenario| scenario.string.unbalance[0].section = Some("mwd".to_owned()));
+    assert_eq!(unknown.0, "string.unbalance[0].section");
+    assert!(unknown.1.contains("no section of the string has this name"), "{unknown:?}");
+    let ambiguous = problem(&|scenario| {
+        scenario.string.gauges.clear();
+        scenario.string.unbalance.truncate(1);
+        let name = scenario.string.unbalance[0].section.clone().expect("by section");
+        let other = scenario.string.sections.iter_mut().find(|section| section.name != name);
+        other.expect("another section").name = name;
+    });
+    assert_eq!(ambiguous.0, "string.unbalance[0].section");
+    assert!(ambiguous.1.contains("2 sections have this name"), "{ambiguous:?}");
+    let beyond = problem(&|scenario| scenario.string.unbalance[0].above_end = Some(1e3));
+    assert_eq!(beyond.0, "string.unbalance[0].above_end");
+    assert!(beyond.1.contains("must be in its section, 0 to "), "{beyond:?}");
+    let without = problem(&|scenario| {
+        let gauge = &mut scenario.string.gauges[0];
+        (gauge.measured_depth, gauge.section) = (Some(100.0), None);
+    });
+    assert_eq!(without, ("string.gauges[0].above_end".to_owned(), "belongs to section".to_owned()));
+    let both = problem(&|scenario| scenario.string.gauges[0].above_bit = Some(1.0));
+    assert_eq!(both.0, "string.gauges[0].section");
+    assert!(both.1.contains("not both"), "{both:?}");
+    let above = problem(&|scenario| {
+        scenario.string.unbalance.truncate(1);
+        scenario.string.gauges.clear();
+        (scenario.string.unbalance[0].section, scenario.string.unbalance[0].above_end) =
+            (Some("component 0".to_owned()), None);
+        scenario.string.bit_depth = Some(150.0);
+    });
+    assert_eq!(above.0, "string.unbalance[0].section");
+    assert!(above.1.contains("m above the hole"), "{above:?}");
 }
 
 #[test]

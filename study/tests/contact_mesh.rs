@@ -216,6 +216,8 @@ fn turning_pipe(elements: u32, mass: f64) -> Scenario {
     scenario.string.unbalance = vec![UnbalanceMass {
         measured_depth: Some(6.0),
         above_bit: None,
+        section: None,
+        above_end: None,
         mass,
         radius: 0.05,
         phase_deg: 0.0,

@@ -34,6 +34,18 @@ const MATERIAL_COLUMNS = [
   ["tool_joint.material", "Joint material", "the section's"],
 ];
 
+/** Columns by one of which a place on the string is given, the last next to a section. @type {import("./table.js").Column[]} */
+const PLACE_COLUMNS = [
+  { name: "measured_depth", text: "Measured depth", isOptional: true },
+  { name: "above_bit", text: "or above the bit", isOptional: true },
+  {
+    name: "section",
+    text: "or in section",
+    cell: (label, value, row, set) => nameBox(label, value, row, (name) => set(name || undefined)),
+  },
+  { name: "above_end", text: "above its end", isOptional: true },
+];
+
 /** @type {import("./table.js").Table[]} */
 const TABLES = [
   {
@@ -73,11 +85,7 @@ const TABLES = [
     path: GAUGES,
     heading: "Gauges: further blades by depth and clearance",
     one: "gauge",
-    columns: [
-      { name: "measured_depth", text: "Measured depth", isOptional: true },
-      { name: "above_bit", text: "or above the bit", isOptional: true },
-      { name: "clearance", text: "Radial clearance" },
-    ],
+    columns: [...PLACE_COLUMNS, { name: "clearance", text: "Radial clearance" }],
     proposed: { measured_depth: 0, clearance: 1e-4 },
   },
   {
@@ -85,8 +93,7 @@ const TABLES = [
     heading: "Unbalance masses",
     one: "mass",
     columns: [
-      { name: "measured_depth", text: "Measured depth", isOptional: true },
-      { name: "above_bit", text: "or above the bit", isOptional: true },
+      ...PLACE_COLUMNS,
       { name: "mass", text: "Mass" },
       { name: "radius", text: "Distance from the axis" },
       { name: "phase_deg", text: "Phase", isOptional: true, isSigned: true },

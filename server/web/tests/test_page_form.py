@@ -308,6 +308,21 @@ def test_gauges_and_masses_are_tables(opened: Opens) -> None:
 
 
 @pytest.mark.usefixtures("refused")
+def test_a_mass_has_its_place_in_a_section(opened: Opens) -> None:
+    page = opened(SCENARIO)
+    page.get_by_text("String: tally, gauges, unbalance").click()
+    enter(page.get_by_label("Name of section 3", exact=True), "collars")
+    enter(page.get_by_label("or in section of mass 1", exact=True), "collars")
+    enter(page.get_by_label("above its end of mass 1", exact=True), "1.5")
+    problem = page.get_by_role("group", name="Unbalance masses").locator("[data-problem]")
+    expect(problem).to_contain_text("give either measured_depth or above_bit or section, not both")
+    enter(page.get_by_label("Measured depth of mass 1", exact=True), "")
+    planned(page)
+    mass = changes(page)["string.unbalance"][0]
+    assert (mass["section"], mass["above_end"], mass.get("measured_depth")) == ("collars", 1.5, None)
+
+
+@pytest.mark.usefixtures("refused")
 def test_a_problem_of_the_string_stands_at_its_table(opened: Opens) -> None:
     page = opened(SCENARIO)
     page.get_by_text("String: tally, gauges, unbalance").click()

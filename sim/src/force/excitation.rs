@@ -174,6 +174,8 @@ mod tests {
         ExcitingForce {
             measured_depth: None,
             above_bit: Some(0.0),
+            section: None,
+            above_end: None,
             direction,
             force: Some(100.0),
             torque: None,

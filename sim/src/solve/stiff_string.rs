@@ -2,7 +2,7 @@
 //!
 //! Bending stiffness, clearance, gauges and the flow of the mud take part, which a soft string lacks. A case takes as long as an equilibrium.
 
-use drillsweep_scenario::{Bit, Effect, Scenario, StartFriction, Switch};
+use drillsweep_scenario::{Bit, Effect, Gauge, Scenario, StartFriction, Switch};
 
 use super::model::{Model, ModelError};
 use super::soft_string::{
@@ -81,9 +81,9 @@ fn in_case(
     let mut moving = scenario.clone();
     // Gauges belong to the string.
     let bit = scenario.string.depth_of_bit();
-    for gauge in &mut moving.string.gauges {
-        (gauge.above_bit, gauge.measured_depth) = (Some(bit - gauge.depth(bit)), None);
-    }
+    let in_hole = scenario.in_hole();
+    let above_bit = |gauge: &Gauge| Gauge::above_bit(bit - gauge.depth(bit), gauge.clearance);
+    moving.string.gauges = in_hole.string.gauges.iter().map(above_bit).collect();
     moving.string.gauges.retain(|gauge| gauge.depth(bit_depth) >= 0.0);
     moving.string.unbalance.clear();
     moving.excitation.clear();
@@ -100,7 +100,7 @@ fn in_case(
     } else if operation.rotation_speed_rpm == 0.0 {
         operation.rotation_speed_rpm = 1.0;
     }
-    let [weight_on_bit, torque_on_bit] = mode.bit_loads(&scenario.in_hole().operation);
+    let [weight_on_bit, torque_on_bit] = mode.bit_loads(&in_hole.operation);
     operation.weight_on_bit = weight_on_bit;
     // The rock opposes the rotation.
     operation.torque_on_bit = if operation.rotation_speed_rpm < 0.0 { torque_on_bit } else { -torque_on_bit };

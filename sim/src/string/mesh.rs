@@ -374,6 +374,8 @@ mod tests {
         let mass = UnbalanceMass {
             measured_depth: Some(2.3),
             above_bit: None,
+            section: None,
+            above_end: None,
             mass: 1.0,
             radius: 0.05,
             phase_deg: 90.0,

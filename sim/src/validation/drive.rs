@@ -58,8 +58,11 @@ pub(super) fn check(report: &mut Report, scenario: &Scenario) {
         "true",
         "modes do not hold the torque filter of z_torque: with it `recording.stability` must be false",
     );
+    let sections = scenario.string.named_sections();
     for (i, force) in scenario.excitation.iter().enumerate().take(MOST_EXCITATIONS) {
-        check_excitation(report, &format!("excitation[{i}]"), force, scenario);
+        let path = format!("excitation[{i}]");
+        has_place(report, &path, force.place(), &sections);
+        check_excitation(report, &path, force, scenario);
     }
 }
 
@@ -172,7 +175,6 @@ fn check_top_drive(report: &mut Report, drive: &TopDrive, operation: &Operation)
 }
 
 fn check_excitation(report: &mut Report, path: &str, force: &ExcitingForce, scenario: &Scenario) {
-    has_place(report, path, force.measured_depth, force.above_bit);
     check_amplitude(report, path, force);
     check_frequency(report, path, force, &scenario.operation);
     let highest = match (force.band_to_hz, force.frequency_hz, force.per_revolution) {

@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_4;
 use std::ops::RangeInclusive;
 
 use drillsweep_scenario::{
-    DrillString, ElementLengths, ExcitationDirection, Material, Mesh, MeshName, NodeChoice, PlacedSection,
-    ScaledMesh, Scenario, Section, ToolJoint, TopCondition, TopDriveKind, WallLaw,
+    DrillString, ElementLengths, ExcitationDirection, ExcitingForce, Gauge, Material, Mesh, MeshName,
+    NamedSections, NodeChoice, PlacedSection, ScaledMesh, Scenario, Section, ToolJoint, TopCondition,
+    TopDriveKind, UnbalanceMass, WallLaw, WrittenPlace,
 };
 
 use super::report::Report;
@@ -59,20 +60,21 @@ pub(super) fn check(report: &mut Report, written: &Scenario, scenario: &Scenario
     mesh_targets(report, scenario);
     length(report, written);
     let string = &written.string;
-    for (i, gauge) in string.gauges.iter().enumerate() {
+    let sections = string.named_sections();
+    for (i, gauge) in string.gauges.iter().enumerate().take(MOST_PLACES) {
         let path = format!("string.gauges[{i}]");
         report.positive(gauge.clearance, format!("{path}.clearance"));
-        has_place(report, &path, gauge.measured_depth, gauge.above_bit);
+        has_place(report, &path, gauge.place(), &sections);
     }
-    for (i, mass) in string.unbalance.iter().enumerate() {
-        has_place(report, &format!("string.unbalance[{i}]"), mass.measured_depth, mass.above_bit);
+    for (i, mass) in string.unbalance.iter().enumerate().take(MOST_PLACES) {
+        has_place(report, &format!("string.unbalance[{i}]"), mass.place(), &sections);
     }
     masses(report, scenario);
     if !has_few_places(report, written) {
         return None;
     }
     let mesh = mesh(report, written, scenario)?;
-    clearances(report, written, &mesh);
+    clearances(report, written, scenario, &mesh);
     Some(mesh)
 }
 
@@ -90,26 +92,72 @@ fn has_few_places(report: &mut Report, written: &Scenario) -> bool {
     lists.iter().all(|(_, count, most)| count <= most)
 }
 
-/// Requires that a place is given in one way.
+/// Requires that a place is given in one way, and that of a section in the hole that one section has its name.
 pub(super) fn has_place(
     report: &mut Report,
     path: &str,
-    measured_depth: Option<f64>,
-    above_bit: Option<f64>,
+    place: WrittenPlace<'_>,
+    sections: &NamedSections<'_>,
 ) {
-    const EITHER: &str = "give either measured_depth or above_bit";
-    match (measured_depth, above_bit) {
-        (Some(_), Some(above)) => {
-            report.require(false, format!("{path}.above_bit"), above, format!("{EITHER}, not both"));
+    const ONE: &str = "give either measured_depth or above_bit or section";
+    let WrittenPlace { measured_depth, above_bit, section, above_end } = place;
+    report.require(
+        section.is_some() || above_end.is_none(),
+        format!("{path}.above_end"),
+        above_end.unwrap_or_default(),
+        "belongs to section",
+    );
+    match (measured_depth, above_bit, section) {
+        (None, None, None) => report.require(false, path, "no place", ONE),
+        (Some(_), Some(above), None) => {
+            report.require(false, format!("{path}.above_bit"), above, format!("{ONE}, not both"));
         }
-        (None, None) => report.require(false, path, "no place", EITHER),
+        (None, None, Some(name)) => has_section(report, path, name, place, sections),
+        (_, _, Some(name)) => {
+            report.require(false, format!("{path}.section"), name, format!("{ONE}, not both"));
+        }
         _ => {}
     }
 }
 
+/// Requires that one section has the name of a place, and the place in the hole.
+fn has_section(
+    report: &mut Report,
+    path: &str,
+    name: &str,
+    place: WrittenPlace<'_>,
+    sections: &NamedSections<'_>,
+) {
+    let section_path = format!("{path}.section");
+    let length = match sections.find(name) {
+        Ok(section) => section.length,
+        Err(error) => return report.require(false, section_path, name, error.to_string()),
+    };
+    let above_end = place.above_end.unwrap_or(0.0);
+    report.number(
+        above_end,
+        format!("{path}.above_end"),
+        |above| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&above),
+        format!("must be in its section, 0 to {length} m"),
+    );
+    let is_in_section = (0.0..=length).contains(&above_end);
+    let depth = place.depth_by_section(sections).filter(|_| is_in_section).unwrap_or(f64::NAN);
+    report.require(
+        depth.is_nan() || depth >= -SAME_DEPTH,
+        section_path,
+        name,
+        format!("this place is {} m above the hole with the bit at its depth", -depth),
+    );
+}
+
 /// Path of the field by which a place is given.
-fn place_field(path: &str, above_bit: Option<f64>) -> String {
-    format!("{path}.{}", if above_bit.is_some() { "above_bit" } else { "measured_depth" })
+fn place_field(path: &str, place: WrittenPlace<'_>) -> String {
+    let field = match place {
+        WrittenPlace { section: Some(_), .. } => "section",
+        WrittenPlace { above_bit: Some(_), .. } => "above_bit",
+        _ => "measured_depth",
+    };
+    format!("{path}.{field}")
 }
 
 fn material(report: &mut Report, path: &str, material: &Material) {
@@ -396,22 +444,22 @@ fn mesh(report: &mut Report, written: &Scenario, scenario: &Scenario) -> Option<
     };
 
     let string = &written.string;
-    let gauges = string.gauges.iter().map(|gauge| (gauge.measured_depth, gauge.above_bit));
-    let masses = string.unbalance.iter().map(|mass| (mass.measured_depth, mass.above_bit));
-    let forces = written.excitation.iter().map(|force| (force.measured_depth, force.above_bit));
+    let gauges = string.gauges.iter().map(Gauge::place);
+    let masses = string.unbalance.iter().map(UnbalanceMass::place);
+    let forces = written.excitation.iter().map(ExcitingForce::place);
     for (list, places) in [
         ("string.gauges", gauges.collect::<Vec<_>>()),
         ("string.unbalance", masses.collect()),
         ("excitation", forces.collect()),
     ] {
-        for (i, (measured_depth, above_bit)) in places.into_iter().enumerate() {
-            let hint = match (measured_depth, string.bit_depth) {
+        for (i, place) in places.into_iter().enumerate() {
+            let hint = match (place.measured_depth, string.bit_depth) {
                 (Some(_), Some(_)) => "; above_bit moves with the bit",
                 _ => "",
             };
             report.number(
-                above_bit.or(measured_depth).unwrap_or(f64::NAN),
-                place_field(&format!("{list}[{i}]"), above_bit),
+                place.above_bit.or(place.measured_depth).unwrap_or(f64::NAN),
+                place_field(&format!("{list}[{i}]"), place),
                 |place| (-SAME_DEPTH..=length + SAME_DEPTH).contains(&place),
                 format!("must be on the string, 0 to {length} m{hint}"),
             );
@@ -443,9 +491,11 @@ fn too_fine(report: &mut Report, scenario: &Scenario) {
 }
 
 /// Checks clearances of gauges next to those of the bodies, and warns of gauges, masses and excitations without effect.
-fn clearances(report: &mut Report, written: &Scenario, mesh: &StringMesh) {
-    let (string, bit) = (&written.string, mesh.length());
-    for (i, gauge) in string.gauges.iter().enumerate() {
+fn clearances(report: &mut Report, written: &Scenario, scenario: &Scenario, mesh: &StringMesh) {
+    let bit = mesh.length();
+    // The same lists, written and by measured depth.
+    let gauges = &scenario.string.gauges;
+    for (i, (as_written, gauge)) in written.string.gauges.iter().zip(gauges).enumerate() {
         let path = format!("string.gauges[{i}]");
         let node = mesh.nearest_node(gauge.depth(bit));
         let adjoining = &mesh.elements[node.saturating_sub(1)..mesh.elements.len().min(node + 1)];
@@ -458,17 +508,18 @@ fn clearances(report: &mut Report, written: &Scenario, mesh: &StringMesh) {
                 format!("must be at most {left} m, the clearance of the body there"),
             );
         }
-        let shared = string.gauges[..i].iter().any(|other| mesh.nearest_node(other.depth(bit)) == node);
+        let shared = gauges[..i].iter().any(|other| mesh.nearest_node(other.depth(bit)) == node);
         report.warn(shared, &path, "another gauge is at the same node; the smaller clearance holds");
-        placed(report, &place_field(&path, gauge.above_bit), (gauge.depth(bit), node), true, mesh);
+        placed(report, &place_field(&path, as_written.place()), (gauge.depth(bit), node), true, mesh);
     }
-    for (i, mass) in string.unbalance.iter().enumerate() {
-        let path = place_field(&format!("string.unbalance[{i}]"), mass.above_bit);
+    let masses = written.string.unbalance.iter().zip(&scenario.string.unbalance);
+    for (i, (as_written, mass)) in masses.enumerate() {
+        let path = place_field(&format!("string.unbalance[{i}]"), as_written.place());
         let depth = mass.depth(bit);
         placed(report, &path, (depth, mesh.nearest_node(depth)), true, mesh);
     }
-    for (i, force) in written.excitation.iter().enumerate() {
-        let path = place_field(&format!("excitation[{i}]"), force.above_bit);
+    for (i, (as_written, force)) in written.excitation.iter().zip(&scenario.excitation).enumerate() {
+        let path = place_field(&format!("excitation[{i}]"), as_written.place());
         let depth = force.depth(bit);
         let moves = force.direction == ExcitationDirection::Torsional && top_moves(written);
         placed(report, &path, (depth, mesh.nearest_node(depth)), !moves, mesh);
@@ -501,7 +552,9 @@ mod tests {
     #[test]
     fn places_are_counted_before_they_are_compared() {
         problem("string.gauges", |s| s.string.gauges = vec![Gauge::at(100.0, 1e-4); MOST_PLACES + 1]);
-        problem("string.unbalance", |s| s.string.unbalance = vec![s.string.unbalance[0]; MOST_PLACES + 1]);
+        problem("string.unbalance", |s| {
+            s.string.unbalance = vec![s.string.unbalance[0].clone(); MOST_PLACES + 1]
+        });
     }
 
     #[test]
@@ -664,11 +717,13 @@ mod tests {
         let top = UnbalanceMass {
             measured_depth: Some(0.0),
             above_bit: None,
+            section: None,
+            above_end: None,
             mass: 1.0,
             radius: 0.05,
             phase_deg: 0.0,
         };
-        let found = warnings(|s| s.string.unbalance.push(top));
+        let found = warnings(|s| s.string.unbalance.push(top.clone()));
         assert!(found[0].message.contains("held"));
     }
 

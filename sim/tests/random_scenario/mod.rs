@@ -116,6 +116,8 @@ fn draw_string(draw: &mut Draw, hole: f64) -> DrillString {
         string.unbalance.push(UnbalanceMass {
             measured_depth: Some(length * draw.between(0.02, 1.0)),
             above_bit: None,
+            section: None,
+            above_end: None,
             mass: draw.log(0.05, 300.0),
             radius: 0.5 * hole * draw.between(0.05, 0.9),
             phase_deg: draw.between(0.0, 360.0),

@@ -53,6 +53,8 @@ fn draw_force(draw: &mut Draw, fastest: f64) -> ExcitingForce {
     ExcitingForce {
         measured_depth: None,
         above_bit: Some(0.0),
+        section: None,
+        above_end: None,
         direction,
         force: (!is_torsional).then_some(amplitude),
         torque: is_torsional.then_some(amplitude),

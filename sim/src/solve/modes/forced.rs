@@ -355,6 +355,8 @@ mod tests {
         scenario.string.unbalance = vec![UnbalanceMass {
             measured_depth: Some(6.0),
             above_bit: None,
+            section: None,
+            above_end: None,
             mass: 0.8,
             radius: 0.1,
             phase_deg: 30.0,
@@ -430,7 +432,7 @@ mod tests {
         for station in &mut scenario.well.survey {
             station.inclination_deg = 90.0;
         }
-        scenario.string.gauges = vec![Gauge { measured_depth: Some(6.0), above_bit: None, clearance: 1e-4 }];
+        scenario.string.gauges = vec![Gauge::at(6.0, 1e-4)];
         (scenario.contact.static_friction, scenario.contact.dynamic_friction) = (0.0, 0.0);
         let force = Excitation::Turning { measured_depth: 6.0, amplitude: 100.0, per_revolution: 1.0 };
         let found = &response(&scenario, &force, &[0.01])[0];

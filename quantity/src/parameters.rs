@@ -143,6 +143,13 @@ pub(super) static ALL: &[Quantity] = &[
         Some(&units::ANGULAR_SPEED),
         "regularisation speed of the torque on bit",
     ),
+    field("bit.bit_radius", "a", Some(&units::WIDTH), "bit radius"),
+    field("bit.specific_energy", "eps", Some(&units::STRESS), "specific energy of the rock"),
+    field("bit.inclination", "zeta", Some(&units::RATIO), "inclination of the cutting force"),
+    field("bit.contact_stress", "sigma", Some(&units::STRESS), "contact stress of the wear flats"),
+    field("bit.wear_length", "l", Some(&units::WIDTH), "length of the wear flats"),
+    field("bit.friction_geometry", "mu gamma", Some(&units::RATIO), "friction of the wear flats"),
+    field("bit.blades", "n", None, "blades of the bit"),
     // The top drive.
     field("top_drive.gain", "", Some(&units::RATIO), "impedance factor of the drive"),
     field("top_drive.frequency_hz", "f", Some(&units::FREQUENCY), "tuning frequency of the drive"),

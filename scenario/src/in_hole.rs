@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use drillsweep_quantity::Place;
 
 use crate::named_section::{NamedSection, NamedSections};
-use crate::{DrillString, ExcitingForce, Gauge, NodeChoice, Scenario, Section, SectionOrder, UnbalanceMass};
+use crate::{
+    BitLaw, DrillString, ExcitingForce, Gauge, NodeChoice, Scenario, Section, SectionOrder, UnbalanceMass,
+};
 
 /// Difference of depths that rounding makes \[m\].
 pub(crate) const SAME_DEPTH: f64 = 1e-6;
@@ -37,7 +39,8 @@ impl PlacedSection<'_> {
 
 impl Scenario {
     /// The same scenario written with the string that is in the hole: from the top, without the sections and pieces above it, and with the measured depths of
-    /// gauges, unbalance masses and excitations (of those by a section only if one section has its name); with the torque of the bit in place of its aggressiveness. `bit_depth` remains only if the first piece is partly above.
+    /// gauges, unbalance masses and excitations (of those by a section only if one section has its name); with the torque of the bit in place of its aggressiveness,
+    /// or the torque of its cut. `bit_depth` remains only if the first piece is partly above.
     ///
     /// A bit depth that is not on the string, which validation refuses, leaves the whole string.
     pub fn in_hole(&self) -> Cow<'_, Self> {
@@ -50,6 +53,7 @@ impl Scenario {
         if string.order == SectionOrder::FromTop
             && string.bit_depth.is_none()
             && self.bit.aggressiveness.is_none()
+            && self.bit.law != BitLaw::Regenerative
             && places().all(|place| place.above_bit.is_none() && place.section.is_none())
         {
             return Cow::Borrowed(self);

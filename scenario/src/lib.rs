@@ -32,7 +32,7 @@ mod top_drive;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyPreset, AccuracyTarget, Integrator, Promise, TOLERANCES, TimeStepping};
-pub use bit::{Bit, BitLaw};
+pub use bit::{Bit, BitLaw, SteadyCut};
 pub use catalogue::{CATALOGUE, CataloguePipe};
 pub use compose::{compose, json_number};
 pub use effects::{ActiveEffects, AutoRule, Effect, Effects, Switch};

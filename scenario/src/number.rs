@@ -132,7 +132,8 @@ numbers!(Mud: density, flow_rate, yield_stress, consistency, flow_index, bit_pre
 numbers!(Hydraulics: nozzles, nozzle_area, discharge_coefficient, tool_pressure_drop, surface_length, surface_diameter;
     without losses, surface_case);
 numbers!(Operation: rotation_speed_rpm, weight_on_bit, torque_on_bit, axial_speed, length_above; without top);
-numbers!(Bit: aggressiveness, static_ratio, weakening_speed, regularisation_speed; without law);
+numbers!(Bit: aggressiveness, static_ratio, weakening_speed, regularisation_speed, bit_radius, specific_energy, inclination,
+    contact_stress, wear_length, friction_geometry; without law, blades);
 numbers!(TopDrive: gain, frequency_hz, inertia, inertia_compensation, factor, time_constant; without kind, tuning);
 numbers!(ExcitingForce: measured_depth, above_bit, above_end, force, torque, frequency_hz, per_revolution, phase_deg, band_to_hz;
     without section, direction, seed);

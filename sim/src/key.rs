@@ -655,6 +655,7 @@ mod tests {
             ".accuracy.spectral_radius",
             ".accuracy.tolerance",
             ".bit.aggressiveness",
+            ".bit.bit_radius",
             ".contact.damping_per_length",
             ".contact.stiffness_per_length",
             ".cost_study.duration",

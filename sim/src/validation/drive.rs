@@ -22,6 +22,27 @@ const LARGEST_WEAKENING_SPEED: f64 = 1000.0;
 /// Largest speed up to which torque on bit rises \[rad/s\], 95 rpm.
 const LARGEST_REGULARISATION_SPEED: f64 = 10.0;
 
+/// Largest radius of a bit \[m\], half of the widest hole.
+const LARGEST_BIT_RADIUS: f64 = 2.5;
+
+/// Specific energies of rocks \[Pa\], from below all soils to beyond the hardest.
+const SPECIFIC_ENERGIES: RangeInclusive<f64> = 1e5..=1e10;
+
+/// Inclinations of the cutting force.
+const INCLINATIONS: RangeInclusive<f64> = 0.01..=10.0;
+
+/// Contact stresses of wear flats \[Pa\].
+const CONTACT_STRESSES: RangeInclusive<f64> = 0.0..=1e10;
+
+/// Lengths of the wear flats of all blades \[m\].
+const WEAR_LENGTHS: RangeInclusive<f64> = 0.0..=0.5;
+
+/// Products of friction coefficient and geometry of the wear flats.
+const FRICTION_GEOMETRIES: RangeInclusive<f64> = 0.0..=10.0;
+
+/// Numbers of blades.
+const BLADES: RangeInclusive<u32> = 1..=20;
+
 /// Largest damping of a drive in impedances of the top pipe.
 const LARGEST_GAIN: f64 = 100.0;
 
@@ -82,6 +103,7 @@ fn check_bit(report: &mut Report, scenario: &Scenario) {
             "follows from bit.aggressiveness and operation.weight_on_bit: give 0",
         );
     }
+    check_cut(report, scenario);
     let (least, most) = STATIC_RATIOS.into_inner();
     report.number(
         bit.static_ratio,
@@ -113,6 +135,63 @@ fn check_bit(report: &mut Report, scenario: &Scenario) {
         format!(
             "must be at least {slowest:.3} rpm either way, bit.regularisation_speed: operation.torque_on_bit is that of a turning bit"
         ),
+    );
+}
+
+fn check_cut(report: &mut Report, scenario: &Scenario) {
+    let bit = &scenario.bit;
+    if let Some(radius) = bit.bit_radius {
+        report.number(
+            radius,
+            "bit.bit_radius",
+            |radius| radius > 0.0 && radius <= LARGEST_BIT_RADIUS,
+            format!("must be greater than 0 and at most {LARGEST_BIT_RADIUS} m (6 1/8 in is 0.0778 m)"),
+        );
+    }
+    for (path, value, range, unit) in [
+        ("bit.specific_energy", bit.specific_energy, SPECIFIC_ENERGIES, " Pa"),
+        ("bit.inclination", bit.inclination, INCLINATIONS, ""),
+        ("bit.contact_stress", bit.contact_stress, CONTACT_STRESSES, " Pa"),
+        ("bit.wear_length", bit.wear_length, WEAR_LENGTHS, " m"),
+        ("bit.friction_geometry", bit.friction_geometry, FRICTION_GEOMETRIES, ""),
+    ] {
+        let (least, most) = range.clone().into_inner();
+        report.number(
+            value,
+            path,
+            |value| range.contains(&value),
+            format!("must be {least:?} to {most:?}{unit}"),
+        );
+    }
+    report.require(
+        BLADES.contains(&bit.blades),
+        "bit.blades",
+        bit.blades,
+        format!("must be {} to {}", BLADES.start(), BLADES.end()),
+    );
+    if bit.law != BitLaw::Regenerative {
+        return;
+    }
+    let torque = scenario.operation.torque_on_bit;
+    report.number(
+        torque,
+        "operation.torque_on_bit",
+        |torque| torque == 0.0,
+        "follows from operation.weight_on_bit with the law regenerative: give 0",
+    );
+    report.require(
+        bit.aggressiveness.is_none(),
+        "bit.aggressiveness",
+        "a number",
+        "torque on bit follows from the cut with the law regenerative: leave it out",
+    );
+    let weight = -scenario.operation.weight_on_bit;
+    let carried = bit.carried_weight(scenario.bit_radius());
+    report.number(
+        scenario.operation.weight_on_bit,
+        "operation.weight_on_bit",
+        |_| !(weight <= carried),
+        format!("the bit does not drill: its wear flats carry {carried:.0} N, bit_radius x wear_length x contact_stress; press it with more"),
     );
 }
 
@@ -352,6 +431,44 @@ mod tests {
         let many =
             vec![json!({ "above_bit": 0.0, "direction": "axial", "force": 1.0, "frequency_hz": 1.0 }); 65];
         assert_eq!(problems(with("excitation", json!(many)))[0].path, "excitation");
+    }
+
+    #[test]
+    fn a_regenerative_bit_has_windows_and_no_run() {
+        let regenerative = |change: Value| {
+            let mut bit = json!({ "law": "regenerative", "wear_length": 1e-3 });
+            bit.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+            let operation =
+                json!({ "rotation_speed_rpm": 120.0, "weight_on_bit": -1e5, "torque_on_bit": 0.0 });
+            let scenario = drillsweep_scenario::preset("paper-200m").unwrap();
+            scenario.with("bit", bit).unwrap().with("operation", operation).unwrap()
+        };
+        let paths = |problems: drillsweep_scenario::Problems| {
+            problems.0.iter().map(|problem| problem.path.clone()).collect::<Vec<_>>()
+        };
+        let scenario = regenerative(json!({}));
+        assert_eq!(crate::validation::validate_window(&scenario), Ok(vec![]));
+        let problems = crate::validation::validate(&scenario).unwrap_err();
+        assert!(problems.to_string().contains("operating windows only"), "{problems}");
+        assert_eq!(paths(problems), ["bit.law"]);
+        for (change, path) in [
+            (json!({ "bit_radius": 0.0 }), "bit.bit_radius"),
+            (json!({ "specific_energy": 1e4 }), "bit.specific_energy"),
+            (json!({ "inclination": 0.0 }), "bit.inclination"),
+            (json!({ "contact_stress": -1.0 }), "bit.contact_stress"),
+            (json!({ "friction_geometry": 11.0 }), "bit.friction_geometry"),
+            (json!({ "blades": 0 }), "bit.blades"),
+            (json!({ "aggressiveness": 0.8 }), "bit.aggressiveness"),
+            // 0.1 m x 20 mm x 60 MPa are 120 kN or more.
+            (json!({ "wear_length": 0.02 }), "operation.weight_on_bit"),
+        ] {
+            let found = crate::validation::validate_window(&regenerative(change)).unwrap_err();
+            assert_eq!(paths(found), [path]);
+        }
+        let mut scenario = scenario;
+        scenario.operation.torque_on_bit = -1e3;
+        let found = crate::validation::validate_window(&scenario).unwrap_err();
+        assert_eq!(paths(found), ["operation.torque_on_bit"]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ mod study;
 mod time;
 mod window;
 
-use drillsweep_scenario::{Problems, Scenario, Warning};
+use drillsweep_scenario::{BitLaw, Problems, Scenario, Warning};
 use report::Report;
 
 /// Checks that a scenario can be simulated.
@@ -20,7 +20,24 @@ use report::Report;
 /// The scenario has problems; all are returned at once, each with the field's path, its value and the valid range. A scenario
 /// without problems may still have warnings of properties that are probably not meant.
 pub fn validate(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
-    check(scenario, true)
+    check(scenario, true, Use::Run)
+}
+
+/// Checks that a scenario has operating windows: as [`validate`], but the bit may have the law `regenerative`, which no run in time has.
+///
+/// # Errors
+/// As [`validate`].
+pub fn validate_window(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
+    check(scenario, true, Use::Window)
+}
+
+/// Use of a scenario.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Use {
+    /// A run in time, or anything else that is about the equations of a run.
+    Run,
+    /// Operating windows of bit and drive.
+    Window,
 }
 
 /// Checks again a scenario whose numbers at the paths `changed` differ from those of one that was checked in full.
@@ -40,10 +57,10 @@ pub fn validate_changes<'a>(
     let of_snapshots = scenario.recording.snapshots.is_some().then_some("duration");
     let parts = || shapes.into_iter().chain(of_snapshots);
     let mut changed = changed.into_iter();
-    check(scenario, changed.any(|path| parts().any(|part| leads_to(path, part))))
+    check(scenario, changed.any(|path| parts().any(|part| leads_to(path, part))), Use::Run)
 }
 
-fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems> {
+fn check(scenario: &Scenario, with_shape: bool, purpose: Use) -> Result<Vec<Warning>, Problems> {
     let mut report = Report::default();
     // The other rules skip numbers that are not finite.
     for (path, number) in scenario.numbers_not_finite() {
@@ -66,6 +83,12 @@ fn check(scenario: &Scenario, with_shape: bool) -> Result<Vec<Warning>, Problems
     };
     loads::check(&mut report, scenario);
     drive::check(&mut report, written);
+    report.require(
+        purpose == Use::Window || written.bit.law != BitLaw::Regenerative,
+        "bit.law",
+        "regenerative",
+        "has operating windows only, not a run in time or its modes: take `velocity_weakening`, or `drillsweep window`",
+    );
     time::check(&mut report, scenario, mesh.as_ref());
     report.finish()
 }

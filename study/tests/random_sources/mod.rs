@@ -19,6 +19,7 @@ pub(crate) fn add_sources(seed: u64, index: u64, scenario: &mut Scenario) {
         weakening_speed: draw.log(0.05, 1e3),
         regularisation_speed: draw.log(1e-3, 10.0).min(0.9 * fastest),
         aggressiveness: draw.chance(0.3).then(|| draw.log(1e-2, 5.0)),
+        ..Bit::default()
     };
     if scenario.bit.aggressiveness.is_some() {
         scenario.operation.torque_on_bit = 0.0;

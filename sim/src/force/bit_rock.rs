@@ -69,6 +69,16 @@ impl WeakeningTorque {
         (takes_part && law.scale.is_finite() && law.scale > 0.0).then_some(law)
     }
 
+    /// Fall of the torque by speed \[N m s\] at a speed \[rad/s\], of a bit with a torque \[N m\], opposite in sign, at the nominal speed \[rad/s\].
+    pub(crate) fn fall(bit: &Bit, nominal_torque: f64, nominal_speed: f64, speed: f64) -> f64 {
+        Self::new(bit, nominal_torque, nominal_speed).change(speed - nominal_speed)[1]
+    }
+
+    /// Torque \[N m\] on such a bit at a speed \[rad/s\], opposite in sign.
+    pub(crate) fn torque(bit: &Bit, nominal_torque: f64, nominal_speed: f64, speed: f64) -> f64 {
+        nominal_torque + Self::new(bit, nominal_torque, nominal_speed).change(speed - nominal_speed)[0]
+    }
+
     /// Torque of a bit with a torque \[N m\] at the nominal speed \[rad/s\].
     fn new(bit: &Bit, nominal_torque: f64, nominal_speed: f64) -> Self {
         let mut law = Self {

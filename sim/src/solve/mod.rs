@@ -9,3 +9,4 @@ pub mod soft_string;
 pub mod statics;
 pub mod step;
 pub mod stiff_string;
+pub mod window;

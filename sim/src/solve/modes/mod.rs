@@ -26,6 +26,7 @@ pub use mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, Modes, 
 pub use pencil::Pencil;
 pub use receptance::{Receptance, Response};
 pub use stability::{Instability, InstabilityKind, Stability, stability, static_stability};
+pub(in crate::solve) use torsion::rubbing;
 pub use torsion::{TorsionalMode, UndampedTorsion, growing_torsion, torsional_modes};
 
 use std::f64::consts::TAU;

@@ -175,7 +175,7 @@ impl ModesError {
     }
 
     /// Refuses a string with an axial speed: small motions about its equilibrium need axial friction in motion.
-    pub(super) fn require_no_axial_speed(motion: BodyMotion) -> Result<(), Self> {
+    pub(in crate::solve) fn require_no_axial_speed(motion: BodyMotion) -> Result<(), Self> {
         let speed = motion.axial_speed;
         if speed == 0.0 { Ok(()) } else { Err(Self::AxialSpeed { speed }) }
     }

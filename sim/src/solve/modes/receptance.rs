@@ -7,6 +7,8 @@ use nalgebra::Complex;
 use super::pencil::Pencil;
 use super::shifted::ShiftedPencil;
 use crate::force::unbalance;
+#[cfg(test)]
+use crate::math::dof::W;
 use crate::math::dof::{DOFS, THETA_Z, U, V};
 use crate::solve::model::Model;
 
@@ -22,7 +24,11 @@ pub struct Receptance<'a> {
 impl<'a> Receptance<'a> {
     /// Receptance of small motions at a frequency \[Hz\]; `None` at an undamped resonance.
     pub fn of(pencil: &'a Pencil, frequency_hz: f64) -> Option<Self> {
-        let shift = Complex::new(0.0, TAU * frequency_hz);
+        Self::at(pencil, Complex::new(0.0, TAU * frequency_hz))
+    }
+
+    /// Receptance of motions exp(s t).
+    pub(crate) fn at(pencil: &'a Pencil, shift: Complex<f64>) -> Option<Self> {
         let factor = ShiftedPencil::new(shift, pencil.matrices(), &pencil.held)?;
         Some(Self { factor, held: &pencil.held })
     }
@@ -55,6 +61,18 @@ impl<'a> Receptance<'a> {
             response.as_flattened_mut().iter_mut().for_each(|value| *value /= twist);
         }
         response
+    }
+
+    /// Displacement and twist of the bit by an axial force of 1 N on it, and by a torque of 1 N m \[m, rad\].
+    #[cfg(test)]
+    pub(crate) fn of_bit(&self) -> [[Complex<f64>; 2]; 2] {
+        [W, THETA_Z].map(|dof| {
+            let mut load = self.no_load();
+            let bit = load.len() - 1;
+            load[bit][dof] = Complex::new(1.0, 0.0);
+            let response = self.to(load)[bit];
+            [response[W], response[THETA_Z]]
+        })
     }
 
     /// Amplitude \[m/N, rad/(N m)\] of a degree of freedom of a node by a force along it.

@@ -149,6 +149,25 @@ struct Chain {
     includes_bit: bool,
 }
 
+/// Damping of twist by friction of the closed contacts at every node \[N m s\], the string turning at a speed \[rad/s\]; negative where friction excites torsion.
+pub(in crate::solve) fn rubbing(model: &Model, equilibrium: &Equilibrium, speed: f64) -> Vec<f64> {
+    let mut rubbing = vec![0.0; model.node_count()];
+    for (node, site) in model.wall.touchable() {
+        let [u, v, ..] = equilibrium.displacement[node];
+        if let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, speed) {
+            rubbing[node] = tangent.damping[2][2];
+        }
+    }
+    for (e, segment) in model.wall.segments().iter().enumerate() {
+        let values = element_values(&equilibrium.displacement, e);
+        let tangent = sliding_segment(model.wall.law(), segment, &values, speed);
+        let [upper, lower] = tangent.map_or([0.0; 2], |tangent| tangent.rubbing);
+        rubbing[e] += upper;
+        rubbing[e + 1] += lower;
+    }
+    rubbing
+}
+
 impl Chain {
     fn about(model: &Model, equilibrium: &Equilibrium) -> Option<Self> {
         let effects = &model.effects;
@@ -188,22 +207,8 @@ impl Chain {
                 chain.stiffness_to_next[above] = -stiffness;
             }
         }
-        for (node, site) in model.wall.touchable() {
-            let [u, v, ..] = equilibrium.displacement[node];
-            if let Some(tangent) = sliding_tangent(model.wall.law(), site, u, v, model.rotation_speed) {
-                // The chain leaves out the held node at the top.
-                chain.rubbing[node - 1] = tangent.damping[2][2];
-            }
-        }
-        for (e, segment) in model.wall.segments().iter().enumerate() {
-            let values = element_values(&equilibrium.displacement, e);
-            let tangent = sliding_segment(model.wall.law(), segment, &values, model.rotation_speed);
-            let [upper, lower] = tangent.map_or([0.0; 2], |tangent| tangent.rubbing);
-            if let Some(above) = e.checked_sub(1) {
-                chain.rubbing[above] += upper;
-            }
-            chain.rubbing[e] += lower;
-        }
+        // The chain leaves out the held node at the top.
+        chain.rubbing.copy_from_slice(&rubbing(model, equilibrium, model.rotation_speed)[1..]);
         if let (Some(torque), Some(bit)) = (torque_on_bit, chain.rubbing.last_mut()) {
             let [_, slope] = torque.change(0.0);
             *bit -= slope;

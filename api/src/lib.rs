@@ -31,6 +31,7 @@ pub mod time_span;
 pub mod torque_drag;
 pub mod verify;
 pub mod view;
+pub mod window;
 
 pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};

@@ -18,6 +18,7 @@ pub mod forced;
 pub mod in_units;
 pub mod judgement;
 mod listed;
+pub mod mode_shapes;
 pub mod point;
 pub mod preset;
 pub mod problem;

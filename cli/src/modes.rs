@@ -1,14 +1,21 @@
 //! Small motions about a scenario's equilibrium: frequencies, growth, direction.
 
 use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Args;
+use drillsweep_api::mode_shapes::ShapesRequest;
+use drillsweep_chart::mode_shapes;
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::{FREQUENCY, MEASURED_DEPTH};
+use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::model::Model;
 use drillsweep_sim::solve::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::validation::validate;
+use drillsweep_table::csv;
 
 use crate::print;
 use crate::scenario::ScenarioArguments;
@@ -30,9 +37,41 @@ pub(crate) struct ModesArguments {
     /// Units of `measured_depth` and `frequency`: `si`, `field`, and `COLUMN:UNIT`, separated by commas.
     #[arg(long, value_parser = UnitChoice::parse, default_value = "si", hide_default_value = true, conflicts_with = "json")]
     units: UnitChoice,
+    /// File for the shapes of the first 100 of these modes along the string: a table (.csv) or a picture of the first eight (.svg).
+    #[arg(long, value_name = "FILE", value_parser = ShapesFile::parse)]
+    shapes: Option<ShapesFile>,
     /// Print the modes as JSON, in SI units.
     #[arg(long)]
     json: bool,
+}
+
+/// File for shapes of modes.
+#[derive(Debug, Clone)]
+struct ShapesFile {
+    path: PathBuf,
+    is_picture: bool,
+}
+
+impl ShapesFile {
+    fn parse(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => Ok(Self { path, is_picture: true }),
+            Some("csv") => Ok(Self { path, is_picture: false }),
+            _ => Err("must end in .csv or .svg".to_owned()),
+        }
+    }
+
+    fn write(&self, scenario: &Scenario, band_hz: [f64; 2], units: &UnitChoice) -> anyhow::Result<()> {
+        let request = ShapesRequest { band_hz, component: None, kind: None, depths: None };
+        let table = request.table(scenario)?;
+        let text = if self.is_picture {
+            mode_shapes(&table, &scenario.name, units)?.svg()
+        } else {
+            csv::write(&table)?
+        };
+        fs::write(&self.path, text).with_context(|| format!("cannot write {}", self.path.display()))
+    }
 }
 
 /// Finds the modes and prints them.
@@ -45,6 +84,9 @@ pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
     let mut found = modes(&model, &equilibrium, &search)?;
     if arguments.growing {
         found.modes.retain(|mode| mode.growth_rate > 0.0);
+    }
+    if let Some(file) = &arguments.shapes {
+        file.write(&scenario, [arguments.from, arguments.to], &arguments.units)?;
     }
     if arguments.json {
         print(&serde_json::to_string_pretty(&found)?);

@@ -172,6 +172,22 @@ quantities! {
     /// True if no motion grows above the frequencies of the count, and all that were counted were found.
     WINDOW_COMPLETE: "window_complete", "", -, "all growing motions found";
 
+    // Shapes of modes.
+    /// Number of the mode, 1 for the lowest frequency of the table.
+    MODE: "mode", "", -, "mode";
+    /// Main motion of the mode: forward, backward, lateral, torsional or axial.
+    MODE_KIND: "mode_kind", "", -, "kind of mode";
+    /// Growth of the amplitude of the mode; negative is decay.
+    MODE_GROWTH: "mode_growth", "", RATE, "growth of the mode";
+    /// Component of the string with most of the kinetic energy of the mode.
+    MODE_COMPONENT: "mode_component", "", -, "component of the mode";
+    /// Largest lateral distance of a node from its equilibrium in a mode, relative to the largest motion of the string.
+    LATERAL_SHAPE: "lateral_shape", "", RATIO, "lateral shape";
+    /// Axial displacement of a node in a mode, relative to the largest motion of the string.
+    AXIAL_SHAPE: "axial_shape", "", RATIO, "axial shape";
+    /// Displacement of the surface of the string by twist in a mode, relative to the largest motion of the string.
+    TORSIONAL_SHAPE: "torsional_shape", "", RATIO, "torsional shape";
+
     // Torque and drag.
     /// Motion of the string and loads on its bit: `pick_up`, `slack_off`, `rotate`, `drill`, `slide` or `ream`.
     DRAG_MODE: "drag_mode", "", -, "motion";

@@ -9,6 +9,7 @@ pub(crate) mod forced;
 pub(crate) mod health;
 pub(crate) mod imports;
 pub(crate) mod metrics;
+pub(crate) mod mode_shapes;
 pub(crate) mod points;
 pub(crate) mod quantities;
 pub(crate) mod report;

@@ -331,6 +331,38 @@ class Point(Reported):
         """
         return self._client.get_json(f"{self.path}/modes", {"to_hz": to_hz, "units": units})
 
+    def mode_shapes(
+        self,
+        *,
+        from_hz: SupportsFloat | None = None,
+        to_hz: SupportsFloat | None = None,
+        component: str | None = None,
+        kind: str | None = None,
+        from_depth: SupportsFloat | None = None,
+        to_depth: SupportsFloat | None = None,
+        units: str | None = None,
+    ) -> Table:
+        """Shapes of the modes of a band of frequencies along the string: a row for each mode and node.
+
+        Columns: `mode`, `frequency`, `mode_growth`, `mode_kind`, `mode_component`, `node`, `measured_depth`,
+        `lateral_shape`, `axial_shape`, `torsional_shape`, the last three relative to the largest motion of the string.
+
+        Args:
+            from_hz: Lowest frequency [Hz]; 0 unless given.
+            to_hz: Highest frequency [Hz]; 20 unless given, at most 50.
+            component: Name of the component with most of the kinetic energy.
+            kind: Main motion: forward, backward, lateral, torsional or axial.
+            from_depth: Measured depth [m] from which the largest kinetic energy lies.
+            to_depth: Measured depth [m] to which it lies.
+            units: Units of the columns, as in `torque_drag`.
+        """
+        depths = {
+            name: None if depth is None else in_query("depth", depth)
+            for name, depth in (("from_depth", from_depth), ("to_depth", to_depth))
+        }
+        band = {"from_hz": from_hz, "to_hz": to_hz}
+        return self.view("mode_shapes", **band, component=component, kind=kind, **depths, units=units)
+
     def hydraulics(self) -> dict[str, Any]:
         """Pressures of the mud's circuit: losses by part, equivalent circulating density by node, standpipe pressure.
 

@@ -1,11 +1,11 @@
 //! Response of small motions about the equilibrium to forces that turn with the string, over the speed of rotation.
 
 use std::f64::consts::PI;
-use std::ops::Range;
 
 use nalgebra::Complex;
 use serde::Serialize;
 
+use super::component::Component;
 use super::mode::ModesError;
 use super::pencil::{Pencil, add_contact, times};
 use super::receptance::{Receptance, Response};
@@ -13,7 +13,6 @@ use crate::math::dof::{DOFS, THETA_X, THETA_Y, U, V};
 use crate::math::linalg::BlockTridiagonal;
 use crate::solve::model::{Model, StringElement};
 use crate::solve::statics::{Equilibrium, StaticsError};
-use crate::string::MeshElement;
 
 /// Largest number of speeds of one response.
 pub const MOST_SPEEDS: usize = 500;
@@ -181,30 +180,7 @@ pub fn forced_response<'a>(
     }))
 }
 
-/// Elements of a section of the string.
-struct Component {
-    name: String,
-    /// Elements of the mesh; its nodes are those of their ends.
-    elements: Range<usize>,
-}
-
 impl Component {
-    /// Components of a model from the top.
-    fn of(model: &Model) -> Vec<Self> {
-        let sections = &model.scenario.string.sections;
-        let mut first = 0;
-        let of_section = |elements: &[MeshElement]| {
-            let section = elements[0].section;
-            let name = match &sections[section] {
-                named if !named.name.is_empty() => named.name.clone(),
-                other => format!("{} {}", other.kind.name(), section + 1),
-            };
-            first += elements.len();
-            Self { name, elements: first - elements.len()..first }
-        };
-        model.mesh.elements.chunk_by(|a, b| a.section == b.section).map(of_section).collect()
-    }
-
     fn largest(&self, model: &Model, response: &SpeedResponse) -> ComponentResponse {
         let largest = |values: &mut dyn Iterator<Item = [f64; 2]>| {
             values.reduce(|most, next| if next[0] > most[0] { next } else { most }).unwrap_or([0.0; 2])

@@ -8,16 +8,19 @@
 
 mod accuracy;
 mod arnoldi;
+mod component;
 mod count;
 mod forced;
 mod mode;
 mod pencil;
 mod receptance;
+mod shape;
 mod shifted;
 mod stability;
 mod torsion;
 mod walk;
 
+pub use component::component_names;
 pub use forced::{
     ComponentResponse, ElementResponse, Excitation, ForcedError, MOST_SPEEDS, NodeResponse, SpeedResponse,
     component_responses, forced_response,
@@ -25,6 +28,7 @@ pub use forced::{
 pub use mode::{BIT_NOT_JUDGED, Completeness, Mode, ModeKind, ModeSearch, Modes, ModesError};
 pub use pencil::Pencil;
 pub use receptance::{Receptance, Response};
+pub use shape::{MOST_SHAPES, ModeShape, ShapeNode, mode_shapes};
 pub use stability::{Instability, InstabilityKind, Stability, stability, static_stability};
 pub(in crate::solve) use torsion::rubbing;
 pub use torsion::{TorsionalMode, UndampedTorsion, growing_torsion, torsional_modes};

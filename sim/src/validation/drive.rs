@@ -190,7 +190,7 @@ fn check_cut(report: &mut Report, scenario: &Scenario) {
     report.number(
         scenario.operation.weight_on_bit,
         "operation.weight_on_bit",
-        |_| !(weight <= carried),
+        |_| weight > carried || !carried.is_finite(),
         format!("the bit does not drill: its wear flats carry {carried:.0} N, bit_radius x wear_length x contact_stress; press it with more"),
     );
 }

@@ -280,7 +280,7 @@ fn eigenvalues_with_history(
     }
     // Differentiation over theta = cos(k pi / N) (Trefethen), from the present (k = 0) to the delay (k = N).
     let x: Vec<f64> = (0..=HISTORY).map(|k| (k as f64 * PI / HISTORY as f64).cos()).collect();
-    let c = |k: usize| if k == 0 || k == HISTORY { 2.0 } else { 1.0 } * if k % 2 == 0 { 1.0 } else { -1.0 };
+    let c = |k: usize| if k == 0 || k == HISTORY { 2.0 } else { 1.0 } * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     for i in 1..=HISTORY {
         let mut diagonal = 0.0;
         for j in (0..=HISTORY).filter(|j| *j != i) {

@@ -7,6 +7,8 @@
 //! length over which the wall spreads a force.) The forces act at two points of the element, the Gauss points of the weight g, which carry the same
 //! force and the same first three moments as the whole.
 
+use nalgebra::Vector3;
+
 use super::law::ContactParameters;
 use super::motion::{LateralMotion, Surface};
 use super::node::ContactNode;
@@ -100,6 +102,18 @@ pub(super) struct Pressed<L> {
     pub(super) share: L,
     /// Centre of the penetration; 1/2 without contact.
     middle: L,
+}
+
+/// Derivatives of a [`Pressed`] by the gaps at the upper end, in the middle and at the lower end.
+pub(super) struct PressedSlopes {
+    /// Of the places of both points \[1/m\].
+    pub(super) at: [Vector3<f64>; 2],
+    /// Of their parts \[1/m\].
+    pub(super) parts: [Vector3<f64>; 2],
+    /// Of the mean penetration.
+    pub(super) depth: Vector3<f64>,
+    /// Of the root mean square penetration.
+    pub(super) rms: Vector3<f64>,
 }
 
 /// Comparison of whole elements with the wall, before any roots are taken.
@@ -356,6 +370,17 @@ impl<L: Lane> ContactSegment<L> {
         self.place(at).motion(motion)
     }
 
+    /// Share of its force that a point carries at a distance from the axis \[m\]: 1 beyond half the clearance, and down to zero on the axis.
+    ///
+    /// A string that crosses the hole within the element is short of the wall there, but the parabola through three distances is not. The
+    /// direction of the force turns over as the point passes the axis, so that it must be zero there. On the wall the share is 1 to the bit: the
+    /// parabola through three points of a helix stays beyond half its radius for turns up to a whole one.
+    #[inline(always)]
+    pub(super) fn reached(&self, radius: L) -> L {
+        let share = (radius * (L::splat(2.0) / self.wall.clearance)).min(L::splat(1.0));
+        share * (L::splat(2.0) - share)
+    }
+
     #[inline(always)]
     fn points(
         &self,
@@ -372,6 +397,7 @@ impl<L: Lane> ContactSegment<L> {
         [0, 1].map(|k| {
             let (place, part) = (pressed.places[k], pressed.parts[k]);
             let surface = Surface::of(&self.wall, &place.motion(motion), rotation_speed);
+            let part = part * self.reached(surface.penetration + self.wall.clearance);
             let normal = law.limited(part * damping.mul_add(surface.penetration_rate, elastic));
             Point { place, slope: part * slope, normal, surface: Surface { touches, ..surface } }
         })
@@ -486,6 +512,14 @@ impl<L: Lane> Interval<L> {
     }
 }
 
+impl Place<f64> {
+    /// Derivatives of the shape functions by the place.
+    pub(super) fn shape_slope(&self, length: f64) -> Plane<f64> {
+        let turn = length * (0.5 - self.at);
+        [-1.0, turn, 1.0, -turn]
+    }
+}
+
 impl<L: Lane> Place<L> {
     #[inline(always)]
     fn motion(&self, motion: &SegmentMotion<L>) -> LateralMotion<L> {
@@ -501,6 +535,12 @@ impl<L: Lane> Place<L> {
 }
 
 impl ContactSegment<f64> {
+    /// Derivative of [`Self::reached`] by the distance \[1/m\].
+    pub(super) fn reached_slope(&self, radius: f64) -> f64 {
+        let per_radius = 2.0 / self.wall.clearance;
+        if radius * per_radius < 1.0 { 2.0 * per_radius * (1.0 - radius * per_radius) } else { 0.0 }
+    }
+
     /// Energy \[J\] that the wall stores along the element.
     pub fn potential_energy(&self, law: &ContactParameters<f64>, planes: &[Plane<f64>; 2]) -> f64 {
         let rms = self.pressed(planes).map_or(0.0, |pressed| pressed.rms);
@@ -520,6 +560,58 @@ impl ContactSegment<f64> {
             THREE_POINTS
                 .map(|(at, weight)| (segment.place(length.mul_add(at, interval.from)), weight * length))
         })
+    }
+
+    /// The penetration of an element with its derivatives by the gaps at the upper end, in the middle and at the lower end; `None` without
+    /// contact.
+    pub(super) fn pressed_with_slopes(
+        &self,
+        planes: &[Plane<f64>; 2],
+    ) -> Option<(Pressed<f64>, PressedSlopes)> {
+        let pressed = self.pressed(planes).filter(|pressed| pressed.depth > 0.0)?;
+        let Contact { gap, first, .. } = self.contact(planes)?;
+        // Ends of the parts move, but the gap is zero there: only the gap itself changes.
+        let (mut moments, mut slopes, mut by_square) = ([0.0; 4], [Vector3::zeros(); 4], Vector3::zeros());
+        for (Place { at: x, .. }, weight) in self.points_in_the_wall(planes) {
+            let by_gaps = Vector3::from(parabola_through_ends_and_middle(x));
+            let (gap, distance) = (gap.at(x), x - first.from);
+            by_square += by_gaps * (2.0 * weight * gap);
+            let mut power = weight;
+            for (moment, slope) in moments.iter_mut().zip(&mut slopes) {
+                *moment += power * gap;
+                *slope += by_gaps * power;
+                power *= distance;
+            }
+        }
+        let raw = [1, 2, 3].map(|k| {
+            let value = moments[k] / moments[0];
+            (value, (slopes[k] - slopes[0] * value) / moments[0])
+        });
+        let [(mean, by_mean), (second, by_second), (third, by_third)] = raw;
+        let variance = second - mean * mean;
+        if variance <= 0.0 {
+            return None;
+        }
+        let by_variance = by_second - by_mean * (2.0 * mean);
+        let third_central = third - mean * (3.0 * second - 2.0 * mean * mean);
+        let by_third_central =
+            by_third - by_mean * (3.0 * second - 6.0 * mean * mean) - by_second * (3.0 * mean);
+        let deviation = variance.sqrt();
+        let by_deviation = by_variance / (2.0 * deviation);
+        let cube = variance * deviation;
+        let skew = 0.5 * third_central / cube;
+        let by_skew = by_third_central * (0.5 / cube) - by_deviation * (3.0 * skew / deviation);
+        let root = skew.hypot(1.0);
+        let by_root = by_skew * (skew / root);
+        let lean = by_skew * (0.5 / (root * root * root));
+        let at = |side: f64| {
+            by_mean + by_deviation * (skew + side * root) + (by_skew + by_root * side) * deviation
+        };
+        let by_rms = by_square / (2.0 * pressed.rms);
+        Some((
+            pressed,
+            PressedSlopes { at: [at(-1.0), at(1.0)], parts: [lean, -lean], depth: slopes[0], rms: by_rms },
+        ))
     }
 
     /// Unit vectors (u, v) from the axis at the upper end, in the middle and at the lower end, with these places; zero on the axis.
@@ -593,6 +685,11 @@ impl<L: Lane> SegmentCompliance<L> {
 pub fn dot<L: Lane>(a: &Plane<L>, b: &Plane<L>) -> L {
     let halves = [a[0].mul_add(b[0], a[1] * b[1]), a[2].mul_add(b[2], a[3] * b[3])];
     halves[0] + halves[1]
+}
+
+/// Parts of the values at the upper end, in the middle and at the lower end in that of the parabola through them at a place.
+pub(super) fn parabola_through_ends_and_middle(x: f64) -> [f64; 3] {
+    [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)]
 }
 
 /// Gauss points of order two on \[0, 1\]: (1 -+ 1/sqrt 3) / 2.

@@ -1,8 +1,8 @@
 //! Loads of the wall on an element at rest and about steady sliding, with their derivatives.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, Vector3};
 
-use super::along_element::{ContactSegment, Place, Plane};
+use super::along_element::{ContactSegment, Place, Plane, parabola_through_ends_and_middle};
 use super::body::BodyMotion;
 use super::law::{ContactParameters, FrictionAtRest};
 use super::node::ContactNode;
@@ -15,8 +15,7 @@ use crate::string::beam::{ElementMatrix, ElementVector};
 pub struct StaticSegmentForce {
     /// Consistent nodal loads \[N, N m\].
     pub force: ElementVector,
-    /// Derivatives of the loads by the nodal values; without friction they are the second derivatives of an energy, up to the square of the angle by
-    /// which the normal turns along the element.
+    /// Derivatives of the loads by the nodal values.
     pub tangent: ElementMatrix,
     /// Normal forces \[N\], shared between the upper and the lower node.
     pub ends: [f64; 2],
@@ -62,16 +61,76 @@ pub fn static_segment(
     values: &ElementVector,
     motion: BodyMotion,
 ) -> Option<StaticSegmentForce> {
-    let friction = law.friction_at_rest(&segment.wall, motion);
-    let elastic = Elastic::of(law, segment, values, friction)?;
-    let mut force = ElementVector::zeros();
-    let mut ends = [0.0; 2];
-    for (point, direction) in &elastic.points {
-        force += point.rows.load(direction.map(|along| -point.normal * along));
-        ends[0] += (1.0 - point.at) * point.normal;
-        ends[1] += point.at * point.normal;
+    resting_segment(law, segment, values, law.friction_at_rest(&segment.wall, motion))
+}
+
+fn resting_segment(
+    law: &ContactParameters<f64>,
+    segment: &ContactSegment<f64>,
+    values: &ElementVector,
+    friction: FrictionAtRest,
+) -> Option<StaticSegmentForce> {
+    let of_planes = planes(values);
+    let (pressed, slopes) = segment.pressed_with_slopes(&of_planes)?;
+    let friction = Direction::new(law, segment, friction);
+    let by_gap =
+        segment.normals(&of_planes).map(|(place, [n_u, n_v])| place.rows().load([n_u, n_v, 0.0, 0.0]));
+    let by_gaps = |slope: &Vector3<f64>| by_gap[0] * slope[0] + by_gap[1] * slope[1] + by_gap[2] * slope[2];
+    let share = segment.wall.stiffness_share;
+    let (stiffness, slope) = (law.stiffness(pressed.rms) * share, law.elastic_slope(pressed.rms) * share);
+    let whole = stiffness * pressed.depth;
+    // The law stiffens with the root mean square penetration.
+    let by_whole =
+        slopes.depth * stiffness + slopes.rms * ((slope - stiffness) / pressed.rms * pressed.depth);
+    let mut found =
+        StaticSegmentForce { force: ElementVector::zeros(), tangent: ElementMatrix::zeros(), ends: [0.0; 2] };
+    for k in 0..2 {
+        let (place, part) = (pressed.places[k], pressed.parts[k]);
+        let (rows, moving) = (place.rows(), place.moving_rows(segment.length));
+        let (radius, [n_u, n_v]) = outwards(&rows, values);
+        let reached = segment.reached(radius);
+        let normal = part * whole * reached;
+        let direction = friction.at([n_u, n_v]);
+        let load = rows.load(direction);
+        // The point moves along the wall and outwards, with the string and by its own step along the string.
+        let by_place = by_gaps(&slopes.at[k]);
+        let moved = |[u, v]: [f64; 2]| {
+            rows.load([u, v, 0.0, 0.0]) + by_place * (u * moving.u(values) + v * moving.v(values))
+        };
+        let turn = moved([-n_v, n_u]) / radius;
+        let [turned_u, turned_v, ..] = friction.at([-n_v, n_u]);
+        let by_normal = by_gaps(&(by_whole * part + slopes.parts[k] * whole)) * reached
+            + moved([n_u, n_v]) * (part * whole * segment.reached_slope(radius));
+        found.force -= load * normal;
+        found.tangent -= load * by_normal.transpose()
+            + moving.load(direction) * by_place.transpose() * normal
+            + rows.load([turned_u, turned_v, 0.0, 0.0]) * turn.transpose() * normal;
+        found.ends[0] += (1.0 - place.at) * normal;
+        found.ends[1] += place.at * normal;
     }
-    Some(StaticSegmentForce { force, tangent: -elastic.stiffness, ends })
+    Some(found)
+}
+
+/// Direction d = n + mu t of the wall's force -F_n d on a string that slides along the wall.
+struct Direction {
+    along: f64,
+    arm: f64,
+    axial: f64,
+}
+
+impl Direction {
+    fn new(law: &ContactParameters<f64>, segment: &ContactSegment<f64>, friction: FrictionAtRest) -> Self {
+        Self {
+            along: friction.about * law.tangential_share,
+            arm: friction.about * law.torque_share * segment.wall.contact_radius,
+            axial: friction.along * law.tangential_share,
+        }
+    }
+
+    /// Components along u and v, the arm of the torque \[m\], and the component along e3, at a normal.
+    fn at(&self, [n_u, n_v]: [f64; 2]) -> [f64; 4] {
+        [n_u - self.along * n_v, n_v + self.along * n_u, self.arm, self.axial]
+    }
 }
 
 /// The elastic force of the wall along an element, with friction in proportion to it.
@@ -88,6 +147,8 @@ struct Elastic {
 struct PressedPoint {
     at: f64,
     rows: Rows,
+    /// Distance from the axis \[m\].
+    radius: f64,
     /// Unit vector (u, v) from the axis.
     outwards: [f64; 2],
     /// Part of the whole force.
@@ -108,20 +169,15 @@ impl Elastic {
         let pressed = segment.pressed(&of_planes).filter(|pressed| pressed.depth > 0.0)?;
         let share = segment.wall.stiffness_share;
         let (stiffness, slope) = (law.stiffness(pressed.rms) * share, law.elastic_slope(pressed.rms) * share);
-        let (along, arm) = (
-            friction.about * law.tangential_share,
-            friction.about * law.torque_share * segment.wall.contact_radius,
-        );
-        let axial = friction.along * law.tangential_share;
-        // The force is -F_n d with the direction d = n + mu t, which turns with n.
-        let direction = |[n_u, n_v]: [f64; 2]| [n_u - along * n_v, n_v + along * n_u, arm, axial];
+        let friction = Direction::new(law, segment, friction);
+        let direction = |normal: [f64; 2]| friction.at(normal);
         let mut sum = ElementMatrix::zeros();
         let (mut pushed, mut inwards) = (ElementVector::zeros(), ElementVector::zeros());
         let points = [0, 1].map(|k| {
             let (place, part) = (pressed.places[k], pressed.parts[k]);
             let rows = place.rows();
             let (radius, outwards) = outwards(&rows, values);
-            let normal = part * stiffness * pressed.depth;
+            let normal = part * stiffness * pressed.depth * segment.reached(radius);
             let along_wall = [-outwards[1], outwards[0]];
             let turned = direction(along_wall);
             let turns = normal / radius;
@@ -131,7 +187,7 @@ impl Elastic {
             }));
             pushed += rows.load(direction(outwards)) * (part * pressed.depth);
             inwards += rows.load([outwards[0], outwards[1], 0.0, 0.0]) * (part * pressed.depth);
-            (PressedPoint { at: place.at, rows, outwards, part, normal }, direction(outwards))
+            (PressedPoint { at: place.at, rows, radius, outwards, part, normal }, direction(outwards))
         });
         let normals = segment.normals(&of_planes).map(|(place, [n_u, n_v])| {
             let Rows(rows) = place.rows();
@@ -140,10 +196,9 @@ impl Elastic {
         for (place, weight) in segment.points_in_the_wall(&of_planes) {
             let rows = place.rows();
             let x = place.at;
-            let by_gaps = [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)];
             let gap = normals
                 .iter()
-                .zip(by_gaps)
+                .zip(parabola_through_ends_and_middle(x))
                 .fold(ElementVector::zeros(), |sum, (normal, by)| sum + normal * by);
             let (_, outwards) = outwards(&rows, values);
             sum += rows.load(direction(outwards)) * gap.transpose() * (weight * stiffness);
@@ -201,7 +256,12 @@ pub fn sliding_segment(
     let sliding_speed = rotation_speed * radius;
     let friction = law.friction_of(&segment.wall);
     let about = friction.coefficient(sliding_speed);
-    let elastic = Elastic::of(law, segment, values, FrictionAtRest { about, along: 0.0 })?;
+    let friction_at_rest = FrictionAtRest { about, along: 0.0 };
+    let mut elastic = Elastic::of(law, segment, values, friction_at_rest)?;
+    // Across the hole there is no energy.
+    if elastic.points.iter().any(|(point, _)| segment.reached(point.radius) < 1.0) {
+        elastic.stiffness = -resting_segment(law, segment, values, friction_at_rest)?.tangent;
+    }
     let friction_slope = friction.slope(sliding_speed);
     let mut damping = ElementMatrix::zeros();
     let mut rubbing = [0.0; 2];
@@ -236,22 +296,28 @@ struct Rows(SMatrix<f64, 4, { 2 * DOFS }>);
 
 impl Place<f64> {
     fn rows(&self) -> Rows {
-        let mut rows = SMatrix::zeros();
-        for (end, [deflection, turn]) in
-            [[self.shape[0], self.shape[1]], [self.shape[2], self.shape[3]]].into_iter().enumerate()
-        {
-            let node = DOFS * end;
-            (rows[(0, node + U)], rows[(0, node + THETA_Y)]) = (deflection, turn);
-            (rows[(1, node + V)], rows[(1, node + THETA_X)]) = (deflection, -turn);
-        }
-        for (row, dof) in [(2, THETA_Z), (3, W)] {
-            (rows[(row, dof)], rows[(row, DOFS + dof)]) = (1.0 - self.at, self.at);
-        }
-        Rows(rows)
+        Rows::new(&self.shape, [1.0 - self.at, self.at])
+    }
+
+    /// Derivatives of the rows by the place.
+    fn moving_rows(&self, length: f64) -> Rows {
+        Rows::new(&self.shape_slope(length), [-1.0, 1.0])
     }
 }
 
 impl Rows {
+    /// Rows of shape functions of the deflection, and of both ends' shares in twist and stretch.
+    fn new(shape: &Plane<f64>, shares: [f64; 2]) -> Self {
+        let mut rows = SMatrix::zeros();
+        let ends = [[shape[0], shape[1]], [shape[2], shape[3]]].into_iter().zip(shares);
+        for (node, ([deflection, turn], share)) in [0, DOFS].into_iter().zip(ends) {
+            (rows[(0, node + U)], rows[(0, node + THETA_Y)]) = (deflection, turn);
+            (rows[(1, node + V)], rows[(1, node + THETA_X)]) = (deflection, -turn);
+            (rows[(2, node + THETA_Z)], rows[(3, node + W)]) = (share, share);
+        }
+        Self(rows)
+    }
+
     fn u(&self, values: &ElementVector) -> f64 {
         (self.0.row(0) * values)[0]
     }

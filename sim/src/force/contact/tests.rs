@@ -965,6 +965,73 @@ fn tangent_of_a_partial_contact_follows_its_moving_end() {
     }
 }
 
+/// An element that crosses the hole between its middle and its lower end, whose parabola of distances is in the wall there.
+fn across_the_hole(lower: f64) -> ElementVector {
+    let clearance = SEGMENT.wall.clearance;
+    let mut values = rigid(0.2 * clearance, lower * clearance);
+    // The middle at 1.06 clearances.
+    let turn = 4.0 / SEGMENT.length * clearance * (1.06 - 0.5 * (0.2 + lower));
+    (values[THETA_Y], values[DOFS + THETA_Y]) = (turn, -turn);
+    (values[V], values[DOFS + V]) = (0.01 * clearance, -0.02 * clearance);
+    values
+}
+
+#[test]
+fn tangent_of_an_element_across_the_hole_is_the_derivative_of_its_loads() {
+    let law = parameters(&ContactLaw { stiffness_sharpness: 3e3, ..BASE });
+    let mut next = numbers();
+    let mut faded = 0;
+    for _ in 0..200 {
+        let mut values = across_the_hole(-1.02 + 0.1 * next());
+        for (dof, size) in [(U, 1e-2), (V, 3e-2), (DOFS + V, 3e-2), (THETA_X, 2e-2), (DOFS + THETA_X, 2e-2)] {
+            values[dof] += size * next();
+        }
+        let Some(contact) = static_segment(&law, &SEGMENT, &values, turning(1.0)) else { continue };
+        let pressed = SEGMENT.pressed(&planes(&values)).unwrap();
+        faded += usize::from(pressed.places.iter().any(|place| {
+            let [u, v] = planes(&values).map(|plane| dot(&place.shape, &plane));
+            SEGMENT.reached(u.hypot(v)) < 1.0
+        }));
+        for dof in [U, V, THETA_X, THETA_Y, DOFS + U, DOFS + V, DOFS + THETA_X, DOFS + THETA_Y] {
+            let unit = ElementVector::from_fn(|i, _| if i == dof { 1e-9 } else { 0.0 });
+            let force = |by: &ElementVector| {
+                static_segment(&law, &SEGMENT, by, turning(1.0)).map_or(ElementVector::zeros(), |of| of.force)
+            };
+            let found = (force(&(values + unit)) - force(&(values - unit))) / 2e-9;
+            let off = (found - contact.tangent.column(dof)).norm();
+            assert!(off < 1e-4 * contact.tangent.norm(), "{dof}: {off:e} of {:e}", contact.tangent.norm());
+        }
+    }
+    assert!(faded > 20, "{faded}");
+}
+
+/// The loads on an element whose point crosses the axis of the hole change with the step, at rest and in motion.
+#[test]
+fn loads_do_not_jump_as_a_string_crosses_the_axis_within_an_element() {
+    let law = parameters(&FRICTIONLESS);
+    let loads = |lower: f64| {
+        let mut values = across_the_hole(lower);
+        values[DOFS + V] = 1e-9;
+        values[V] = 0.0;
+        let mut moving = SegmentForce::none();
+        let moves =
+            dynamic_segment(&law, &SEGMENT, &motion_of(&values, &ElementVector::zeros()), 0.0, &mut moving);
+        let resting = static_segment(&law, &SEGMENT, &values, turning(1.0));
+        assert_eq!(moves, resting.is_some());
+        let resting = resting.map_or(ElementVector::zeros(), |contact| contact.force);
+        if moves {
+            assert_close(moving.load(0)[2], resting[DOFS + U], 1e-9);
+        }
+        resting
+    };
+    let steps = 4000;
+    let step = 0.6 / f64::from(steps);
+    let of: Vec<ElementVector> = (0..=steps).map(|k| loads(-1.3 + step * f64::from(k))).collect();
+    let largest = of.iter().fold(0.0_f64, |most, loads| most.max(loads.amax()));
+    let jump = of.windows(2).fold(0.0_f64, |most, pair| most.max((pair[1] - pair[0]).amax()));
+    assert!(largest > 0.0 && jump < 0.01 * largest, "{jump} N of {largest} N");
+}
+
 /// Pseudo-random numbers in \[-1, 1).
 fn numbers() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
@@ -1658,18 +1725,10 @@ fn wall(effects: &ActiveEffects) -> Wall {
 }
 
 #[test]
-fn elements_of_a_wall_at_nodes_are_shared_between_nodes_of_their_clearance() {
+fn a_wall_has_the_elements_and_the_nodes_that_are_free_to_touch_it() {
     let along = wall(&ActiveEffects::ALL);
     assert_eq!(along.segments().len(), 3);
     assert_eq!(along.touchable().map(|(node, _)| node).collect::<Vec<_>>(), [0, 1, 2]);
-    let at_nodes = along.at_nodes();
-    assert!(at_nodes.segments().is_empty());
-    let shares = at_nodes.sites().iter().flatten().map(|site| (site.stiffness_share, site.damping_share));
-    for ((stiffness, damping), expected) in shares.zip([(1.1, 2.0), (1.3, 4.0), (1.0, 1.0)]) {
-        assert_close(stiffness, expected.0, 1e-15);
-        assert_close(damping, expected.1, 1e-15);
-    }
-    assert_eq!(at_nodes.sites().len(), 4);
     let off = wall(&ActiveEffects { contact: false, ..ActiveEffects::ALL });
     assert!(off.segments().is_empty() && off.touchable().next().is_none());
 }

@@ -130,7 +130,8 @@ impl<const D: usize> Block<D> {
 
     /// The inverse by Gauss-Jordan elimination with partial pivoting, and the smallest pivot's magnitude. A singular block yields a pivot
     /// of zero (or not a number) and no usable inverse.
-    pub(super) fn inverse(&self) -> (Self, f64) {
+    pub(super) fn inverse(&self) -> (Self, f64, bool) {
+        let mut is_negative = false;
         let mut columns = self.columns;
         let mut swaps = [[false; D]; D];
         let mut smallest_pivot = f64::INFINITY;
@@ -138,6 +139,7 @@ impl<const D: usize> Block<D> {
             for row in pivot + 1..D {
                 let swap = columns[pivot][row].abs() > columns[pivot][pivot].abs();
                 swaps[pivot][row] = swap;
+                is_negative ^= swap;
                 if swap {
                     for column in &mut columns {
                         column.swap(pivot, row);
@@ -145,6 +147,7 @@ impl<const D: usize> Block<D> {
                 }
             }
             smallest_pivot = columns[pivot][pivot].abs().min(smallest_pivot);
+            is_negative ^= columns[pivot][pivot] < 0.0;
             // The pivot row's contribution, with its pivot scaled to one, to every row; in place of the pivot row the row itself.
             let mut multipliers = columns[pivot].map(|multiplier| -multiplier);
             multipliers[pivot] = 1.0;
@@ -166,6 +169,6 @@ impl<const D: usize> Block<D> {
                 columns.swap(pivot, other);
             }
         }
-        (Block { columns }, smallest_pivot)
+        (Block { columns }, smallest_pivot, is_negative)
     }
 }

@@ -22,6 +22,7 @@ pub struct Factor<const D: usize = DOFS> {
     /// `-S^-1 U` of the middle row, S its pivot block.
     middle_from_below: SplitBlock<D>,
     growth: f64,
+    has_negative_determinant: bool,
 }
 
 /// Rows eliminated one after the other from one end.
@@ -50,14 +51,14 @@ impl<const D: usize> Factor<D> {
         let rows = matrix.rows();
         assert!(rows > 0, "a matrix without rows");
         let middle = rows / 2;
-        let mut growth = 0.0;
+        let (mut growth, mut is_negative) = (0.0, false);
 
         let mut top = Chain::with_capacity(middle);
         let mut from_above = Block::zero();
         for row in 0..middle {
             let mut pivot = matrix.diagonal[row];
             matrix.lower[row].multiply_block_add(&from_above, &mut pivot);
-            let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
+            let inverse = invert(&pivot, row, &matrix.diagonal[row], (&mut growth, &mut is_negative))?;
             from_above = top.push(inverse, &matrix.lower[row], &matrix.upper[row]);
         }
 
@@ -66,14 +67,14 @@ impl<const D: usize> Factor<D> {
         for row in (middle + 1..rows).rev() {
             let mut pivot = matrix.diagonal[row];
             matrix.upper[row].multiply_block_add(&from_below, &mut pivot);
-            let inverse = invert(&pivot, row, &matrix.diagonal[row], &mut growth)?;
+            let inverse = invert(&pivot, row, &matrix.diagonal[row], (&mut growth, &mut is_negative))?;
             from_below = bottom.push(inverse, &matrix.upper[row], &matrix.lower[row]);
         }
 
         let mut pivot = matrix.diagonal[middle];
         matrix.lower[middle].multiply_block_add(&from_above, &mut pivot);
         matrix.upper[middle].multiply_block_add(&from_below, &mut pivot);
-        let inverse = invert(&pivot, middle, &matrix.diagonal[middle], &mut growth)?;
+        let inverse = invert(&pivot, middle, &matrix.diagonal[middle], (&mut growth, &mut is_negative))?;
         let negated = inverse.negated();
         Ok(Factor {
             middle: Elimination::new(&inverse, &negated.multiply_block(&matrix.lower[middle])),
@@ -81,6 +82,7 @@ impl<const D: usize> Factor<D> {
             top,
             bottom,
             growth,
+            has_negative_determinant: is_negative,
         })
     }
 
@@ -93,6 +95,11 @@ impl<const D: usize> Factor<D> {
     /// that row. About one in time stepping; the solution loses that factor of its precision.
     pub fn growth(&self) -> f64 {
         self.growth
+    }
+
+    /// True if the determinant of the matrix is negative.
+    pub fn has_negative_determinant(&self) -> bool {
+        self.has_negative_determinant
     }
 
     /// Solves `A x = b`.
@@ -190,19 +197,20 @@ impl<const D: usize> Elimination<D> {
     }
 }
 
-/// The inverse of a pivot block; counts its growth over the matrix' own block.
+/// The inverse of a pivot block; counts its growth over the matrix' own block, and negative determinants modulo two.
 fn invert<const D: usize>(
     pivot: &Block<D>,
     row: usize,
     original: &Block<D>,
-    growth: &mut f64,
+    (growth, is_negative): (&mut f64, &mut bool),
 ) -> Result<Block<D>, SingularBlock> {
     let largest = pivot.largest();
-    let (inverse, smallest_pivot) = pivot.inverse();
+    let (inverse, smallest_pivot, has_negative_determinant) = pivot.inverse();
     let regular = smallest_pivot > largest * (D as f64 * f64::EPSILON) && inverse.is_finite();
     if !regular {
         return Err(SingularBlock { row });
     }
     *growth = growth.max(largest / original.largest());
+    *is_negative ^= has_negative_determinant;
     Ok(inverse)
 }

@@ -296,7 +296,7 @@ fn solutions_of_nodes_with_fewer_degrees_of_freedom_give_their_right_hand_side()
 #[test]
 fn blocks_are_inverted_with_pivoting() {
     let permutation: Block = Block::from_fn(|row, column| f64::from(u8::from((row + 2) % DOFS == column)));
-    let (inverse, smallest_pivot) = permutation.inverse();
+    let (inverse, smallest_pivot, _) = permutation.inverse();
     assert_eq!(inverse, Block::from_fn(|row, column| permutation[(column, row)]));
     assert_eq!(smallest_pivot, 1.0);
 }

@@ -116,7 +116,7 @@ impl<const D: usize> BlockTridiagonal<D> {
     pub fn inverse_bands(&self) -> Result<InverseBands<D>, SingularBlock> {
         let rows = self.rows();
         let inverse = |pivot: &Block<D>, row: usize| {
-            let (inverse, smallest) = pivot.inverse();
+            let (inverse, smallest, _) = pivot.inverse();
             if smallest > 0.0 && inverse.is_finite() { Ok(inverse) } else { Err(SingularBlock { row }) }
         };
         let mut pivots = self.diagonal.clone();

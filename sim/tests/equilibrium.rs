@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use drillsweep_scenario::{
     Effect, Gauge, Material, Mud, PRESETS, Scenario, Section, SectionKind, StartFriction, SurveyStation,
-    Switch, preset,
+    Switch, WallLaw, preset,
 };
 use drillsweep_sim::force::contact::{
     LateralMotion, SegmentForce, SegmentMotion, dynamic_contact, dynamic_segment, planes, static_segment,
@@ -372,6 +372,20 @@ fn a_string_that_nothing_holds_stays_on_the_axis_of_a_vertical_hole() {
     }
 }
 
+#[test]
+fn strings_that_cross_the_hole_within_an_element_rest_in_balance() {
+    // Random scenarios on walls along elements of many metres. On the way to their equilibria the axis of the hole lies between two nodes.
+    for index in [9, 81, 97, 104, 234, 308, 375] {
+        let mut scenario = random_scenario(1, index);
+        scenario.contact.law = WallLaw::PerLength;
+        let model = Model::new(&scenario).unwrap();
+        let rest = Equilibrium::find(&model).unwrap_or_else(|error| panic!("scenario {index}: {error}"));
+        assert!(rest.normal_force.iter().any(|force| *force > 0.0), "scenario {index}");
+        let left = unbalanced(&model, &rest);
+        assert!(left < 1e-9, "scenario {index}: {left:e}");
+    }
+}
+
 /// The horizontal string of collars with friction, without loads at the bit.
 fn rubbing() -> Scenario {
     let mut scenario = horizontal(200.0, [0.159, 0.071], 2.5);
@@ -475,6 +489,17 @@ fn a_run_from_sliding_friction_begins_in_balance_and_one_from_break_away_does_no
         scenario.statics.friction = StartFriction::BreakAway;
         let step = unbalanced_at_the_start(scenario);
         assert!((0.07..0.1).contains(&step), "{}: {step} from break-away", scenario.name);
+    }
+}
+
+#[test]
+fn runs_of_strings_that_cross_the_hole_within_an_element_begin_in_balance() {
+    for index in [97, 104, 308, 375] {
+        let mut scenario = random_scenario(1, index);
+        scenario.contact.law = WallLaw::PerLength;
+        scenario.statics.friction = StartFriction::Sliding;
+        let left = unbalanced_at_the_start(&scenario);
+        assert!(left < 1e-8, "scenario {index}: {left:e}");
     }
 }
 

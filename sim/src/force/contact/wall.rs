@@ -52,22 +52,6 @@ impl Wall {
         self.sites.iter().enumerate().filter_map(|(node, site)| Some((node, site.as_ref()?)))
     }
 
-    /// The wall with its contact along the elements moved to their ends: half of each element at the nodes that it touches with its own clearance. It
-    /// is the trapezoid rule of the same wall, on the way to an equilibrium.
-    #[must_use]
-    pub fn at_nodes(&self) -> Self {
-        let mut sites = self.sites.clone();
-        for (element, segment) in self.segments.iter().enumerate() {
-            for site in sites[element..=element + 1].iter_mut().flatten() {
-                if site.clearance == segment.wall.clearance {
-                    site.stiffness_share += 0.5 * segment.wall.stiffness_share;
-                    site.damping_share += 0.5 * segment.wall.damping_share;
-                }
-            }
-        }
-        Self { law: self.law, sites, segments: Vec::new() }
-    }
-
     /// The same wall with another friction of nodes at rest.
     #[must_use]
     pub fn with_friction_at_rest(&self, at_rest: StartFriction) -> Self {

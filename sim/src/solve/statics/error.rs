@@ -69,12 +69,13 @@ impl StaticsError {
         }
     }
 
-    /// True if an equilibrium may exist nevertheless, as far as is known.
-    pub(super) fn is_open(&self) -> bool {
+    /// The failure with the instability that the string has in every position.
+    pub(super) fn with_overload(self, find: impl FnOnce() -> Option<Overload>) -> Self {
         match self {
-            Self::NotConverged { overload, .. } => overload.is_none(),
-            Self::Singular(_) | Self::OutsideHole { .. } | Self::HydraulicsNotConverged { .. } => true,
-            Self::Mud { .. } => false,
+            Self::NotConverged { iterations, residual, node, .. } => {
+                Self::NotConverged { iterations, residual, node, overload: find() }
+            }
+            other => other,
         }
     }
 }

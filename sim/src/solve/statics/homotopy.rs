@@ -13,14 +13,15 @@ use super::newton::{
 };
 use super::path::{self, Growth, Point, add};
 use crate::force::contact::{
-    ContactNode, ContactSegment, SmoothContactForce, SmoothSegmentForce, smooth_static_contact,
-    smooth_static_segment,
+    ContactNode, ContactSegment, SmoothContactForce, SmoothSegmentForce, StaticSegmentForce,
+    smooth_static_contact, smooth_static_segment, static_segment,
 };
 use crate::math::dof::{DOFS, U, V};
 use crate::math::linalg::{Block, BlockTridiagonal, Factor};
 use crate::solve::model::{
     Model, NodalVector, add_element_matrix, add_element_vector, clear_held, element_values,
 };
+use crate::string::beam::{ElementMatrix, ElementVector};
 
 /// Springs to the centre line \[N/m2\] from which the path is followed, one after the other until it leads to the scenario: the one that
 /// Newton's method begins with, and others of orders of magnitude, without a derivation.
@@ -208,12 +209,30 @@ impl SmoothWall {
         };
         let element = |(e, (segment, width)): (usize, (&ContactSegment<f64>, &f64))| {
             let values = element_values(&at.displacement, e);
-            smooth_static_segment(law, segment, &values, motion, width * (1.0 - share), share)
+            let smooth = smooth_static_segment(law, segment, &values, motion, width * (1.0 - share), share);
+            mixed(smooth, static_segment(law, segment, &values, motion), share)
         };
         Self {
             nodes: model.wall.sites().iter().zip(&at.displacement).zip(widths).map(node).collect(),
             elements: model.wall.segments().iter().zip(widths_along).enumerate().map(element).collect(),
         }
+    }
+}
+
+/// The share `1 - s` of a smooth wall along an element and the share s of the wall itself. The smooth one acts at fixed points, so that it does not
+/// become the wall along an element as its width vanishes.
+fn mixed(smooth: SmoothSegmentForce, sharp: Option<StaticSegmentForce>, share: f64) -> SmoothSegmentForce {
+    let (force, tangent) = sharp.map_or_else(
+        || (ElementVector::zeros(), ElementMatrix::zeros()),
+        |sharp| (sharp.force, sharp.tangent),
+    );
+    let rest = 1.0 - share;
+    SmoothSegmentForce {
+        force: smooth.force * rest + force * share,
+        tangent: smooth.tangent * rest + tangent * share,
+        by_width: smooth.by_width * rest,
+        // The share of friction is that of the path.
+        by_friction: smooth.by_friction * rest + (force - smooth.force),
     }
 }
 

@@ -4,7 +4,6 @@
 //! with the hydraulics until both have converged (docs/model/equilibrium.md).
 
 mod buckling;
-mod continuation;
 mod error;
 mod homotopy;
 mod hydraulics;
@@ -34,10 +33,6 @@ const HYDRAULIC_PASSES: usize = 30;
 
 /// Change of an eccentricity at which string and mud have converged: with three digits gained in a pass, the remainder is rounding.
 const ECCENTRICITY_TOLERANCE: f64 = 1e-10;
-
-/// Springs to the centre line \[N/m2\] with which the path of equilibria is followed, one after the other until it reaches the loads: none,
-/// then the one that the search begins with, which holds the string until its loads stretch it.
-const PATH_SPRINGS: [f64; 2] = [0.0, 3e4];
 
 /// The string at rest: displacements, internal forces, contacts, flow.
 #[derive(Debug, Clone)]
@@ -94,16 +89,18 @@ impl Equilibrium {
             &sections,
             (displacement, concentric),
             |load, displacement| {
-                let outcome = with_fallbacks(model, load, displacement, start)?;
+                let outcome = settled(model, load, displacement, start)?;
                 start = Start::NextToSolution;
                 Ok(outcome)
             },
         );
         let failure = match found {
-            Err(failure) if failure.is_open() => failure,
+            Err(failure) if !matches!(failure, StaticsError::Mud { .. }) => failure,
             ended => return ended,
         };
-        let Some((displacement, outcome)) = homotopy::find(model, &sections) else { return Err(failure) };
+        let Some((displacement, outcome)) = homotopy::find(model, &sections) else {
+            return Err(failure.with_overload(|| overload::find(model)));
+        };
         let eccentricity = eccentricities(model, &displacement);
         let flows = sections.flows(&eccentricity)?;
         let drag = drag(model, &flows);
@@ -252,50 +249,16 @@ fn eccentricities(model: &Model, displacement: &[[f64; DOFS]]) -> Vec<f64> {
     (0..model.elements.len()).map(|element| model.eccentricity(element, displacement)).collect()
 }
 
-/// Newton's method. If it does not converge: relaxation from the same start, contact along elements from contact at the nodes, and the path of
-/// equilibria from the unloaded string.
-fn with_fallbacks(
+/// Newton's method. If it does not converge: relaxation from the same start.
+fn settled(
     model: &Model,
     load: &[[f64; DOFS]],
     displacement: &mut NodalVector,
     start: Start,
 ) -> Result<newton::NewtonOutcome, StaticsError> {
     let before = displacement.clone();
-    let failure = match newton::solve(model, &model.wall, load, displacement, start) {
-        Err(failure) => failure,
-        converged => return converged,
-    };
-    displacement.clone_from(&before);
-    let found = relaxation::settle(model, load, displacement)
-        .or_else(|| by_way_of_the_nodes(model, load, &before, displacement))
-        .or_else(|| {
-            PATH_SPRINGS.iter().find_map(|&spring| continuation::follow(model, load, displacement, spring))
-        });
-    if let Some(outcome) = found {
-        return Ok(outcome);
-    }
-    Err(match failure {
-        StaticsError::NotConverged { iterations, residual, node, .. } => {
-            let overload = overload::find(model);
-            StaticsError::NotConverged { iterations, residual, node, overload }
-        }
-        other => other,
+    newton::solve(model, &model.wall, load, displacement, start).or_else(|failure| {
+        *displacement = before;
+        relaxation::settle(model, load, displacement).ok_or(failure)
     })
-}
-
-/// Moves `displacement` to the equilibrium on a wall along the elements, from the one on the wall at the nodes, searched from `start`; `None` if
-/// the wall is at the nodes anyway, or either is not found.
-fn by_way_of_the_nodes(
-    model: &Model,
-    load: &[[f64; DOFS]],
-    start: &NodalVector,
-    displacement: &mut NodalVector,
-) -> Option<newton::NewtonOutcome> {
-    if model.wall.segments().is_empty() {
-        return None;
-    }
-    let at_nodes = Model { wall: model.wall.at_nodes(), ..model.clone() };
-    displacement.clone_from(start);
-    with_fallbacks(&at_nodes, load, displacement, Start::Anywhere).ok()?;
-    continuation::along_the_elements(model, load, displacement)
 }

@@ -1,7 +1,8 @@
 //! A path of equilibria, followed by its arc length.
 //!
 //! `R(x, s) = 0`, the balance under a share s of a growing quantity, is a path through x and s. It is followed by its arc length (Riks 1979;
-//! Keller 1977), so that it may turn back in s: at such a limit point, the equilibria that began at s = 0 end.
+//! Keller 1977), so that it may turn back in s: at such a limit point, the equilibria that began at s = 0 end. Its sense is that of the
+//! determinant of its tangent (Allgower and Georg 1990), which holds on at corners of a path that is smooth piece by piece.
 
 use super::newton::{self, NewtonOutcome, tributary_lengths};
 use crate::math::dof::{DOFS, U, V};
@@ -14,8 +15,14 @@ const FIRST_STEP: f64 = 0.05;
 /// Shortest step: the search has lost a path that needs shorter ones.
 const SHORTEST_STEP: f64 = 1e-9;
 
+/// Step below which a corner of the path is expected.
+const CORNER_STEP: f64 = 1e-5;
+
+/// Distances ahead at which the direction behind a corner is taken, one after the other.
+const CORNERS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+
 /// Linearisations after which a path is left.
-const MOST_LINEARISATIONS: usize = 4000;
+const MOST_LINEARISATIONS: usize = 12_000;
 
 /// Iterations within which a step has to return to the path.
 const MOST_CORRECTIONS: usize = 10;
@@ -40,7 +47,8 @@ pub(super) fn follow(
     displacement: &mut NodalVector,
 ) -> Option<NewtonOutcome> {
     let start = displacement.clone();
-    let path = Path { model, growth, tributary: tributary_lengths(model), linearisations: 0 };
+    let path =
+        Path { model, growth, tributary: tributary_lengths(model), linearisations: 0, starts_negative: None };
     path.follow(start, displacement)
 }
 
@@ -49,6 +57,8 @@ struct Path<'a, G> {
     growth: &'a G,
     tributary: Vec<f64>,
     linearisations: usize,
+    /// Sign of the tangent's determinant at the beginning.
+    starts_negative: Option<bool>,
 }
 
 /// A point of the path, or a direction along it.
@@ -70,10 +80,9 @@ impl Point {
 impl<G: Growth> Path<'_, G> {
     fn follow(mut self, start: NodalVector, displacement: &mut NodalVector) -> Option<NewtonOutcome> {
         let mut here = Point { displacement: start, share: 0.0 };
-        let mut last_direction: Option<Point> = None;
         let mut step = FIRST_STEP;
         loop {
-            let direction = self.direction(&here, last_direction.as_ref())?;
+            let direction = self.direction(&here)?;
             let (next, corrections) = loop {
                 if let Some((next, corrections)) = self.step(&here, &direction, step) {
                     if next.share < 1.0 {
@@ -90,13 +99,18 @@ impl<G: Growth> Path<'_, G> {
                     }
                 }
                 step *= 0.5;
+                if step < CORNER_STEP
+                    && let Some(next) = self.round_corner(&here, &direction)
+                {
+                    step = CORNER_STEP;
+                    break (next, MOST_CORRECTIONS);
+                }
                 if step < SHORTEST_STEP || self.linearisations > MOST_LINEARISATIONS {
                     return None;
                 }
             };
             here = next;
-            last_direction = Some(direction);
-            if here.share < 0.0 {
+            if here.share < 0.0 || self.linearisations > MOST_LINEARISATIONS {
                 return None;
             }
             step *= match corrections {
@@ -107,14 +121,18 @@ impl<G: Growth> Path<'_, G> {
         }
     }
 
-    /// The direction of the path at a point, of length 1, onwards from the last one.
-    fn direction(&mut self, here: &Point, last: Option<&Point>) -> Option<Point> {
+    /// The direction of the path at a point, of length 1.
+    ///
+    /// Onwards the share grows where the determinant of the tangent has the sign that it has at the beginning, and falls elsewhere: the
+    /// determinant of the tangent bordered by the direction keeps its sign along a path, round corners too.
+    fn direction(&mut self, here: &Point) -> Option<Point> {
         let (_, factor, slope) = self.linearised(here)?;
         let mut displacement = slope;
         factor.solve_in_place(&mut displacement);
         let size = (self.product(&displacement, &displacement) + 1.0).sqrt();
-        let onwards = last.map_or(1.0, |last| self.product(&displacement, &last.displacement) + last.share);
-        let share = (1.0 / size).copysign(onwards);
+        let is_negative = factor.has_negative_determinant();
+        let is_backward = is_negative != *self.starts_negative.get_or_insert(is_negative);
+        let share = if is_backward { -1.0 / size } else { 1.0 / size };
         displacement.iter_mut().flatten().for_each(|value| *value *= share);
         share.is_finite().then_some(Point { displacement, share })
     }
@@ -146,6 +164,18 @@ impl<G: Growth> Path<'_, G> {
             last = size;
         }
         None
+    }
+
+    /// A point behind a corner of the path; `None` if there is no corner.
+    ///
+    /// When a part of the string meets the wall or leaves it, the path may turn back sharply, so that nothing lies ahead. Its direction
+    /// behind the corner follows from the tangent ahead.
+    fn round_corner(&mut self, here: &Point, direction: &Point) -> Option<Point> {
+        CORNERS.iter().find_map(|&reach| {
+            let onwards = self.direction(&here.plus(reach, direction))?;
+            let (next, _) = self.step(here, &onwards, reach)?;
+            (next.share < 1.0).then_some(next)
+        })
     }
 
     /// Unbalanced forces at a point, the factor of their tangent, and their derivative by the share.

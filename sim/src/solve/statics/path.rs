@@ -123,7 +123,7 @@ impl<G: Growth> Path<'_, G> {
 
     /// The direction of the path at a point, of length 1.
     ///
-    /// Onwards the share grows where the determinant of the tangent has the sign that it has at the beginning, and falls elsewhere: the
+    /// Onwards the share grows while the determinant of the tangent has the sign that it has at the beginning, and falls otherwise: the
     /// determinant of the tangent bordered by the direction keeps its sign along a path, round corners too.
     fn direction(&mut self, here: &Point) -> Option<Point> {
         let (_, factor, slope) = self.linearised(here)?;

@@ -107,8 +107,8 @@ fn processor() -> String {
     use std::arch::x86_64::__cpuid;
     // Leaves 0x80000002 to 0x80000004 have the name, 16 bytes each (Intel SDM, volume 2A, CPUID).
     let last = 0x8000_0004;
-    let leaves = if __cpuid(0x8000_0000).eax >= last { 0x8000_0002..=last } else { 1..=0 };
-    let registers = leaves.flat_map(|leaf| {
+    let has_name = __cpuid(0x8000_0000).eax >= last;
+    let registers = (0x8000_0002..=last).filter(|_| has_name).flat_map(|leaf| {
         let found = __cpuid(leaf);
         [found.eax, found.ebx, found.ecx, found.edx]
     });

@@ -18,6 +18,7 @@ mod spectrum;
 mod string;
 mod sweep;
 mod torque_drag;
+mod window;
 mod words;
 
 pub use cost::work_precision;
@@ -34,6 +35,7 @@ pub use spectrum::spectrum;
 pub use string::string;
 pub use sweep::{SweepView, sweep};
 pub use torque_drag::broomstick;
+pub use window::operating_window;
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

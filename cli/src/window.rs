@@ -1,10 +1,16 @@
 //! Operating window of bit and drive over rotation speed and weight on bit.
 
 use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Args;
 use drillsweep_api::expand::UNINTERRUPTED;
 use drillsweep_api::window::{AxialTop, WindowRequest, table};
+use drillsweep_chart::operating_window;
+use drillsweep_quantity::UnitChoice;
+use drillsweep_quantity::columns::GROWING_MOTIONS;
 use drillsweep_sim::solve::window::{OperatingWindow, WindowPoint};
 use drillsweep_table::csv;
 
@@ -25,6 +31,9 @@ pub(crate) struct WindowArguments {
     /// Axial condition of the top: it descends at the rate of penetration, or hangs on a constant hook load.
     #[arg(long, value_parser = ["advance", "hook_load"], default_value = "advance")]
     axial_top: String,
+    /// File for a picture of the growing motions (.svg).
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// Print all points as JSON.
     #[arg(long)]
     json: bool,
@@ -41,6 +50,11 @@ pub(crate) fn show(arguments: &WindowArguments) -> anyhow::Result<()> {
     let request =
         WindowRequest { speeds: values(&arguments.speeds), weights: values(&arguments.weights), axial_top };
     let window = request.window(&scenario, UNINTERRUPTED)?;
+    if let Some(path) = &arguments.picture {
+        let units = UnitChoice::default();
+        let drawing = operating_window(&table(&window.points), GROWING_MOTIONS.name, &scenario.name, &units)?;
+        fs::write(path, drawing.svg()).with_context(|| format!("cannot write {}", path.display()))?;
+    }
     match (arguments.json, arguments.csv) {
         (true, _) => print(&serde_json::to_string_pretty(&window)?),
         (_, true) => print(csv::write(&table(&window.points))?.trim_end()),

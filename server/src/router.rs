@@ -18,9 +18,9 @@ use crate::guard::middleware;
 use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
-    analysis, cost, events, export, files, forced, health, imports, mode_shapes, points, quantities, report,
-    results, scenarios, session, snapshots, spectrogram, statistics, status, sweeps, torque_drag,
-    verification, web,
+    analysis, cost, events, export, files, forced, health, imports, mode_shapes, operating_window, points,
+    quantities, report, results, scenarios, session, snapshots, spectrogram, statistics, status, sweeps,
+    torque_drag, verification, web,
 };
 
 /// The OpenAPI 3.1 document of the service, from the annotations of routes and types.
@@ -79,6 +79,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
         .routes(routes!(mode_shapes::show))
+        .routes(routes!(operating_window::show))
         .routes(routes!(torque_drag::show))
         .routes(routes!(torque_drag::fit))
         .routes(routes!(forced::show))

@@ -85,6 +85,11 @@ def test_a_point_has_the_shapes_of_its_modes(sweep: Sweep) -> None:
         point.mode_shapes(component="motor")
 
 
+def test_a_bit_of_constant_torque_has_no_operating_window(sweep: Sweep) -> None:
+    with pytest.raises(InvalidRequest, match="constant torque"):
+        sweep.point(1).operating_window(speeds=[60.0, 120.0])
+
+
 def test_friction_is_fitted_to_measured_hook_loads(sweep: Sweep) -> None:
     point = sweep.point(1)
     table = point.torque_drag(modes=["pick_up", "slack_off"], depths=[120.0, 200.0], friction=[0.27])

@@ -10,6 +10,7 @@ pub(crate) mod health;
 pub(crate) mod imports;
 pub(crate) mod metrics;
 pub(crate) mod mode_shapes;
+pub(crate) mod operating_window;
 pub(crate) mod points;
 pub(crate) mod quantities;
 pub(crate) mod report;

@@ -434,6 +434,31 @@ class Point(Reported):
         query = {"speeds": listed, "depth": in_metres, "force": force, "per_revolution": per_revolution, "units": units}
         return self.view("forced_response", **query)
 
+    def operating_window(
+        self,
+        *,
+        speeds: Iterable[float] | None = None,
+        weights: Iterable[float] | None = None,
+        axial_top: str | None = None,
+        units: str | None = None,
+    ) -> Table:
+        """Growth of motions of bit and string, from the linear equations: a row for each rotation speed and weight.
+
+        Columns: `rotation_speed_rpm`, `window_weight`, `window_torque`, `rate_of_penetration`, `growing_motions`,
+        `window_growth_rate`, `window_frequency`, `window_complete`. The bit needs a law other than `constant`.
+
+        Args:
+            speeds: Speeds of rotation [rpm]; 60 to 200 in steps of 2 unless given.
+            weights: Weights on bit [N], positive; that of the scenario unless given. At most 10,000 points.
+            axial_top: `advance` (the top descends at the rate of penetration; the default) or `hook_load`.
+            units: Units of the columns, as in `torque_drag`.
+        """
+        lists = {
+            name: None if values is None else ",".join(map(str, values))
+            for name, values in (("speeds", speeds), ("weights", weights))
+        }
+        return self.view("operating_window", **lists, axial_top=axial_top, units=units)
+
     def fit_friction(
         self,
         points: Iterable[Mapping[str, Any]],

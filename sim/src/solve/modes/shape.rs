@@ -136,7 +136,7 @@ mod tests {
         let first = |kind: ModeKind| shapes.iter().filter(move |shape| shape.mode.kind == kind);
         // Held above and free below: sin((2 n - 1) pi x / 2 L), with the error of the square of a linear element's share of the wave.
         for (number, shape) in first(ModeKind::Torsional).take(2).enumerate() {
-            let sign = if number == 0 { 1.0 } else { shape.nodes.last().unwrap().torsional.signum() * -1.0 };
+            let sign = if number == 0 { 1.0 } else { -shape.nodes.last().unwrap().torsional.signum() };
             for (node, depth) in shape.nodes.iter().zip(&depths) {
                 let wanted = sign * ((2 * number + 1) as f64 * FRAC_PI_2 * depth / length).sin();
                 assert!((node.torsional - wanted).abs() < 1e-3, "{number}, {depth} m: {node:?}, {wanted}");

@@ -70,12 +70,12 @@ fn table(shapes: &[ModeShape], depths: &[f64]) -> Table {
     };
     let nodes = || shapes.iter().flat_map(|_| depths.iter().enumerate());
     Table::default()
-        .with(&MODE, numbers(&|(i, ..)| (i + 1) as f64))
+        .with(&MODE, Column::Integer(rows().map(|(i, ..)| Some(i as i64 + 1)).collect()))
         .with(&FREQUENCY, numbers(&|(_, shape, _)| shape.mode.frequency_hz))
         .with(&MODE_GROWTH, numbers(&|(_, shape, _)| shape.mode.growth_rate))
         .with(&MODE_KIND, text(&|shape| shape.mode.kind.name().to_owned()))
         .with(&MODE_COMPONENT, text(&|shape| shape.component.clone()))
-        .with(&NODE, Column::Number(nodes().map(|(node, _)| (node + 1) as f64).collect()))
+        .with(&NODE, Column::Integer(nodes().map(|(node, _)| Some(node as i64 + 1)).collect()))
         .with(&MEASURED_DEPTH, Column::Number(nodes().map(|(_, depth)| *depth).collect()))
         .with(&LATERAL_SHAPE, numbers(&|(.., node)| node.lateral))
         .with(&AXIAL_SHAPE, numbers(&|(.., node)| node.axial))
@@ -95,8 +95,8 @@ mod tests {
         let table = all.table(&scenario).unwrap();
         let nodes = Model::new(&scenario).unwrap().node_count();
         let column = |table: &Table, name: &str| table.columns[name].numbers().unwrap().to_vec();
-        let modes = column(&table, "mode");
-        assert_eq!(table.rows(), nodes * *modes.last().unwrap() as usize);
+        let Column::Integer(modes) = &table.columns["mode"] else { panic!("mode is a number") };
+        assert_eq!(Some(Some(table.rows() as i64)), modes.last().map(|last| Some(nodes as i64 * (*last)?)));
         assert!(column(&table, "frequency").windows(2).all(|pair| pair[0] <= pair[1]));
         let torsional = ShapesRequest { kind: Some(ModeKind::Torsional), ..all.clone() };
         let twist = torsional.table(&scenario).unwrap();

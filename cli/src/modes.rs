@@ -12,10 +12,11 @@ use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::{FREQUENCY, MEASURED_DEPTH};
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::model::Model;
-use drillsweep_sim::solve::modes::{BIT_NOT_JUDGED, Completeness, ModeSearch, Modes, modes};
+use drillsweep_sim::solve::modes::{BIT_NOT_JUDGED, Completeness, ModeKind, ModeSearch, Modes, modes};
 use drillsweep_sim::solve::statics::Equilibrium;
 use drillsweep_sim::validation::validate;
 use drillsweep_table::csv;
+use serde_json::json;
 
 use crate::print;
 use crate::scenario::ScenarioArguments;
@@ -31,13 +32,16 @@ pub(crate) struct ModesArguments {
     /// Highest frequency in Hz.
     #[arg(long, value_name = "HERTZ", default_value_t = 20.0)]
     to: f64,
+    /// Show only modes of this main motion.
+    #[arg(long, value_parser = ["forward", "backward", "lateral", "torsional", "axial"])]
+    kind: Option<String>,
     /// Show only the modes that grow.
     #[arg(long)]
     growing: bool,
     /// Units of `measured_depth` and `frequency`: `si`, `field`, and `COLUMN:UNIT`, separated by commas.
     #[arg(long, value_parser = UnitChoice::parse, default_value = "si", hide_default_value = true, conflicts_with = "json")]
     units: UnitChoice,
-    /// File for the shapes of the first 100 of these modes along the string: a table (.csv) or a picture of the first eight (.svg).
+    /// File for the shapes of the first 100 modes of the band and kind along the string: a table (.csv) or a picture of the first eight (.svg).
     #[arg(long, value_name = "FILE", value_parser = ShapesFile::parse)]
     shapes: Option<ShapesFile>,
     /// Print the modes as JSON, in SI units.
@@ -62,8 +66,7 @@ impl ShapesFile {
         }
     }
 
-    fn write(&self, scenario: &Scenario, band_hz: [f64; 2], units: &UnitChoice) -> anyhow::Result<()> {
-        let request = ShapesRequest { band_hz, component: None, kind: None, depths: None };
+    fn write(&self, request: &ShapesRequest, scenario: &Scenario, units: &UnitChoice) -> anyhow::Result<()> {
         let table = request.table(scenario)?;
         let text = if self.is_picture {
             mode_shapes(&table, &scenario.name, units)?.svg()
@@ -85,8 +88,13 @@ pub(crate) fn show(arguments: &ModesArguments) -> anyhow::Result<()> {
     if arguments.growing {
         found.modes.retain(|mode| mode.growth_rate > 0.0);
     }
+    let kind =
+        arguments.kind.as_ref().map(|kind| serde_json::from_value::<ModeKind>(json!(kind))).transpose()?;
+    found.modes.retain(|mode| kind.is_none_or(|kind| mode.kind == kind));
     if let Some(file) = &arguments.shapes {
-        file.write(&scenario, [arguments.from, arguments.to], &arguments.units)?;
+        let band_hz = [arguments.from, arguments.to];
+        let request = ShapesRequest { band_hz, component: None, kind, depths: None };
+        file.write(&request, &scenario, &arguments.units)?;
     }
     if arguments.json {
         print(&serde_json::to_string_pretty(&found)?);
@@ -154,7 +162,6 @@ fn text(name: &str, found: &Modes, includes_bit: bool, units: &UnitChoice) -> an
 #[cfg(test)]
 mod tests {
     use drillsweep_sim::solve::modes::Mode;
-    use serde_json::json;
 
     use super::*;
 

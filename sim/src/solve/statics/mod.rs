@@ -98,9 +98,12 @@ impl Equilibrium {
             Err(failure) if !matches!(failure, StaticsError::Mud { .. }) => failure,
             ended => return ended,
         };
-        let Some((displacement, outcome)) = homotopy::find(model, &sections) else {
-            return Err(failure.with_overload(|| overload::find(model)));
-        };
+        // A string that no position holds may be in balance nevertheless, as a pencil on its tip.
+        let failure = failure.with_overload(|| overload::find(model));
+        if matches!(failure, StaticsError::NotConverged { overload: Some(_), .. }) {
+            return Err(failure);
+        }
+        let Some((displacement, outcome)) = homotopy::find(model, &sections) else { return Err(failure) };
         let eccentricity = eccentricities(model, &displacement);
         let flows = sections.flows(&eccentricity)?;
         let drag = drag(model, &flows);

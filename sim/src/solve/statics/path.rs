@@ -168,7 +168,7 @@ impl<G: Growth> Path<'_, G> {
 
     /// A point behind a corner of the path; `None` if there is no corner.
     ///
-    /// When a part of the string meets the wall or leaves it, the path may turn back sharply, so that nothing lies ahead. Its direction
+    /// The path may turn back sharply where a part of the string meets the wall or leaves it, so that nothing lies ahead. Its direction
     /// behind the corner follows from the tangent ahead.
     fn round_corner(&mut self, here: &Point, direction: &Point) -> Option<Point> {
         CORNERS.iter().find_map(|&reach| {

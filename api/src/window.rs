@@ -42,7 +42,7 @@ impl From<WindowError> for Refusal {
 }
 
 impl WindowRequest {
-    /// Growth at every speed and weight in increasing order. Each speed begins with a call of `interruption`.
+    /// Growth at every speed and weight in increasing order. Each speed and point begins with a call of `interruption`.
     ///
     /// # Errors
     /// The scenario is not valid or has no equilibrium, the request is out of range, or the work was interrupted.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::chain::{AxialTop, Chain, Part, Top, TorqueFilter};
 use super::feedback::Feedback;
 use super::roots::{Growing, growing};
-use super::table::Table;
+use super::table::{STEP, Table};
 use crate::force::bit_rock::WeakeningTorque;
 use crate::solve::model::Model;
 use crate::solve::modes::{ModesError, rubbing};
@@ -26,6 +26,9 @@ const HIGHEST_HZ: f64 = 300.0;
 
 /// Parts of the string times places of a table: half a second at most.
 const MOST_VALUES: f64 = 4e6;
+
+/// Places of a table, some 5 MB: a slow bit has a long delay, which many places must follow.
+const MOST_PLACES: f64 = 65_536.0;
 
 /// Speeds and weights of a window.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,7 +123,7 @@ pub enum WindowError {
 /// the rock is one over all speeds; `scenario` is that of the model as written, whose bit follows the weight.
 ///
 /// # Errors
-/// The grid is empty, too large or out of range; the bit does not follow the motion; or `interrupted`, called at each speed, returns an error.
+/// The grid is empty, too large or out of range; the bit does not follow the motion; or `interrupted`, called at each speed and point, returns an error.
 pub fn operating_window<E: From<WindowError>>(
     scenario: &Scenario,
     model: &Model,
@@ -147,9 +150,10 @@ pub fn operating_window<E: From<WindowError>>(
         };
         window.complete_to_hz = window.complete_to_hz.min(table.highest() / TAU);
         let is_free = grid.axial_top == AxialTop::HookLoad;
-        window.points.extend(
-            bits.iter().map(|bit| bit.point(speed_rpm, &growing(&table, is_free, &bit.feedback(speed_rpm)))),
-        );
+        for bit in &bits {
+            interrupted()?;
+            window.points.push(bit.point(speed_rpm, &growing(&table, is_free, &bit.feedback(speed_rpm))));
+        }
         last = Some((dampers, table));
     }
     Ok(window)
@@ -159,7 +163,8 @@ pub fn operating_window<E: From<WindowError>>(
 pub(super) fn table(chains: [Chain; 2], longest_delay: f64) -> Option<Table> {
     let parts = chains.iter().map(Chain::len).sum::<usize>().max(1) as f64;
     let travel: f64 = chains.iter().map(Chain::travel_time).sum::<f64>() + longest_delay;
-    let highest = (TAU * HIGHEST_HZ).min(0.4 * MOST_VALUES / (parts * travel));
+    let places = MOST_PLACES.min(MOST_VALUES / parts);
+    let highest = (TAU * HIGHEST_HZ).min(STEP * places / travel);
     Table::new(chains, highest, longest_delay)
 }
 

@@ -10,7 +10,7 @@ use super::chain::Chain;
 pub(super) const NEUTRAL: f64 = 1e-6;
 
 /// Places of the table in a radian of the waves' and the delay's travel.
-const STEP: f64 = 0.4;
+pub(super) const STEP: f64 = 0.4;
 
 /// Places from which a value between them is interpolated, half of them on either side.
 pub(super) const STENCIL: usize = 16;

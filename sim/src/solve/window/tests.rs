@@ -412,6 +412,17 @@ fn dampers_that_excite_make_the_string_grow_by_itself() {
 }
 
 #[test]
+fn a_long_delay_lowers_the_frequencies_of_a_table_and_not_its_bound() {
+    let (model, _) = model(&cutting(1.0));
+    let still = vec![0.0; model.node_count()];
+    for delay in [1.0, 1e2, 1e4, 1e6] {
+        let table = table(chains(&model, &still, AxialTop::Advance), delay).unwrap();
+        assert!(table.products.len() < 66_000, "{delay} s: {}", table.products.len());
+        assert!(table.highest() * delay < 0.41 * 66_000.0, "{delay} s: {}", table.highest());
+    }
+}
+
+#[test]
 fn grids_out_of_range_and_bits_that_do_not_drill_are_refused() {
     let scenario = cutting(1.0);
     let (model, equilibrium) = model(&scenario);

@@ -27,12 +27,12 @@ pub mod refinement;
 pub mod request;
 pub mod service;
 mod signs;
+pub mod stability_map;
 pub mod sweep;
 pub mod time_span;
 pub mod torque_drag;
 pub mod verify;
 pub mod view;
-pub mod window;
 
 pub use axis::{Axis, AxisName, Scale};
 pub use dry_run::{DryRun, PlannedPoint, PlannedVerification};

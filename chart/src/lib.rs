@@ -15,10 +15,10 @@ mod profile;
 mod shapes;
 mod shown;
 mod spectrum;
+mod stability_map;
 mod string;
 mod sweep;
 mod torque_drag;
-mod window;
 mod words;
 
 pub use cost::work_precision;
@@ -32,10 +32,10 @@ pub use profile::profile;
 pub use shapes::mode_shapes;
 pub use shown::caption;
 pub use spectrum::spectrum;
+pub use stability_map::stability_map;
 pub use string::string;
 pub use sweep::{SweepView, sweep};
 pub use torque_drag::broomstick;
-pub use window::operating_window;
 
 /// Width of a picture as PNG, in pixels: twice its natural size, so that it is sharp on fine screens and in print.
 pub const PNG_WIDTH: u32 = 1600;

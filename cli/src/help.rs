@@ -51,7 +51,10 @@ const GROUPS: [Group; 4] = [
             ("simulate", "drillsweep simulate paper-200m --accuracy draft --set duration=10"),
             ("modes", "drillsweep modes paper-200m --to 5"),
             ("response", "drillsweep response wells/volve-f12-assembly --speeds 60:180:121"),
-            ("window", "drillsweep window wells/stick-slip-1000m --speeds 60:400:35 --weights 20kN:200kN:10"),
+            (
+                "stability",
+                "drillsweep stability wells/stick-slip-1000m --speeds 60:400:35 --weights 20kN:200kN:10",
+            ),
             ("statics", "drillsweep statics paper-200m --modes pick_up,slack_off,rotate --friction 0.2,0.3"),
             ("friction", "drillsweep friction wells/volve-f12 --measured hook-loads.csv"),
             (

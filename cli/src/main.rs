@@ -25,6 +25,7 @@ mod response;
 mod scenario;
 mod service;
 mod simulate;
+mod stability_map;
 mod statics;
 mod submit;
 mod sweeps;
@@ -33,7 +34,6 @@ mod telemetry;
 mod text;
 mod token;
 mod watch;
-mod window;
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -112,8 +112,8 @@ enum Command {
     Friction(friction::FrictionArguments),
     /// Compute the forced response over the speed of rotation: critical speeds by component.
     Response(response::ResponseArguments),
-    /// Compute the operating window of bit and drive: growth over speed and weight on bit.
-    Window(window::WindowArguments),
+    /// Compute the stability map of bit and drive: growth over speed and weight on bit.
+    Stability(stability_map::StabilityArguments),
     /// Compute the pressures of the mud's circuit: losses by part, equivalent circulating density and standpipe pressure, by three sets of formulas.
     Hydraulics(hydraulics::HydraulicsArguments),
     /// Print the components of a string with their weight in air, or the catalogue of pipes.
@@ -241,7 +241,7 @@ fn run() -> anyhow::Result<()> {
         Command::Import(arguments) => import::show(&arguments),
         Command::Modes(arguments) => modes::show(&arguments),
         Command::Response(arguments) => response::show(&arguments),
-        Command::Window(arguments) => window::show(&arguments),
+        Command::Stability(arguments) => stability_map::show(&arguments),
         Command::Statics(arguments) => statics::show(&arguments),
         Command::Friction(arguments) => friction::show(&arguments),
         Command::Hydraulics(arguments) => hydraulics::show(&arguments),

@@ -156,21 +156,21 @@ quantities! {
     /// Measured depth of the largest forced bending stress.
     FORCED_BENDING_STRESS_DEPTH: "forced_bending_stress_depth", "", DEPTH, "depth of the largest forced bending stress";
 
-    // Operating window: growth of small motions by speed and weight.
-    /// Weight on bit of a point of an operating window, positive: compression.
-    WINDOW_WEIGHT: "window_weight", "", FORCE, "weight on bit";
-    /// Torque on bit of a point of an operating window, positive.
-    WINDOW_TORQUE: "window_torque", "", TORQUE, "torque on bit";
+    // Stability map: growth of small motions by speed and weight.
+    /// Weight on bit of a point of a stability map, positive: compression.
+    STABILITY_WEIGHT: "stability_weight", "", FORCE, "weight on bit";
+    /// Torque on bit of a point of a stability map, positive.
+    STABILITY_TORQUE: "stability_torque", "", TORQUE, "torque on bit";
     /// Rate of penetration of steady drilling with the law `regenerative`; absent with other laws.
     RATE_OF_PENETRATION: "rate_of_penetration", "V_0", SPEED, "rate of penetration";
     /// Number of motions of bit and string that grow, by the winding of the characteristic function; absent if they could not be counted.
     GROWING_MOTIONS: "growing_motions", "", -, "growing motions";
     /// Growth of the motion that grows fastest; absent if none grows.
-    WINDOW_GROWTH_RATE: "window_growth_rate", "", RATE, "growth of the fastest motion";
+    STABILITY_GROWTH_RATE: "stability_growth_rate", "", RATE, "growth of the fastest motion";
     /// Frequency of the motion that grows fastest.
-    WINDOW_FREQUENCY: "window_frequency", "", FREQUENCY, "frequency of the fastest motion";
+    STABILITY_FREQUENCY: "stability_frequency", "", FREQUENCY, "frequency of the fastest motion";
     /// True if no motion grows above the frequencies of the count, and all that were counted were found.
-    WINDOW_COMPLETE: "window_complete", "", -, "all growing motions found";
+    STABILITY_COMPLETE: "stability_complete", "", -, "all growing motions found";
 
     // Shapes of modes.
     /// Number of the mode, 1 for the lowest frequency of the table.

@@ -13,7 +13,7 @@ const WEAKENING_SPEED: f64 = 7.0;
 /// Speed of the bit up to which torque on bit rises \[rad/s\].
 const REGULARISATION_SPEED: f64 = 0.1;
 
-/// Intrinsic specific energy of the rock \[Pa\] with the law `regenerative`, of a published simulator (docs/model/operating-window.md).
+/// Intrinsic specific energy of the rock \[Pa\] with the law `regenerative`, of a published simulator (docs/model/stability-map.md).
 const SPECIFIC_ENERGY: f64 = 1e8;
 
 /// Inclination zeta of the cutting force, of the same simulator.
@@ -31,13 +31,13 @@ const FRICTION_GEOMETRY: f64 = 0.9;
 /// Blades of a usual fixed-cutter bit.
 const BLADES: u32 = 5;
 
-/// Interaction of bit and rock (docs/model/drive.md, docs/model/operating-window.md).
+/// Interaction of bit and rock (docs/model/drive.md, docs/model/stability-map.md).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bit {
     /// Torque on bit over the speed of the bit: `constant`, or `velocity_weakening`, which falls as the bit turns faster and so excites torsion; absent means
     /// `constant`. `operation.torque_on_bit` is the torque at the nominal speed of rotation in both. `regenerative` is a bit that cuts what the blade before left: weight and torque follow
-    /// the depth of cut, and torque on bit follows from the weight. It is for operating windows only (docs/model/operating-window.md); a run in time refuses it.
+    /// the depth of cut, and torque on bit follows from the weight. It is for stability maps only (docs/model/stability-map.md); a run in time refuses it.
     #[serde(default)]
     pub law: BitLaw,
     /// Torque on bit over a third of the bit's diameter, by weight on bit: mu_b of T = mu_b |W| D / 3, the friction coefficient of a disc with the torque of the bit, 0 to 10, in place of
@@ -159,7 +159,7 @@ pub enum BitLaw {
     Constant,
     /// Torque on bit falls exponentially with the speed of the bit, and changes its sign with it.
     VelocityWeakening,
-    /// Weight and torque on bit follow the depth of cut, which is the advance since the blade before passed. For operating windows only.
+    /// Weight and torque on bit follow the depth of cut, which is the advance since the blade before passed. For stability maps only.
     Regenerative,
 }
 

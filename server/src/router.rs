@@ -18,8 +18,8 @@ use crate::guard::middleware;
 use crate::openapi;
 use crate::openapi::answers::Problems;
 use crate::route::{
-    analysis, cost, events, export, files, forced, health, imports, mode_shapes, operating_window, points,
-    quantities, report, results, scenarios, session, snapshots, spectrogram, statistics, status, sweeps,
+    analysis, cost, events, export, files, forced, health, imports, mode_shapes, points, quantities, report,
+    results, scenarios, session, snapshots, spectrogram, stability_map, statistics, status, sweeps,
     torque_drag, verification, web,
 };
 
@@ -79,7 +79,7 @@ fn for_programs() -> OpenApiRouter<App> {
         .routes(routes!(analysis::plan))
         .routes(routes!(analysis::modes))
         .routes(routes!(mode_shapes::show))
-        .routes(routes!(operating_window::show))
+        .routes(routes!(stability_map::show))
         .routes(routes!(torque_drag::show))
         .routes(routes!(torque_drag::fit))
         .routes(routes!(forced::show))

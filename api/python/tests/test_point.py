@@ -85,9 +85,9 @@ def test_a_point_has_the_shapes_of_its_modes(sweep: Sweep) -> None:
         point.mode_shapes(component="motor")
 
 
-def test_a_bit_of_constant_torque_has_no_operating_window(sweep: Sweep) -> None:
+def test_a_bit_of_constant_torque_has_no_stability_map(sweep: Sweep) -> None:
     with pytest.raises(InvalidRequest, match="constant torque"):
-        sweep.point(1).operating_window(speeds=[60.0, 120.0])
+        sweep.point(1).stability_map(speeds=[60.0, 120.0])
 
 
 def test_friction_is_fitted_to_measured_hook_loads(sweep: Sweep) -> None:

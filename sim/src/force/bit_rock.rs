@@ -28,7 +28,7 @@ fn decide(context: &EffectContext<'_>) -> Decision {
     let operation = &context.scenario.operation;
     match (context.scenario.bit.law, operation.torque_on_bit != 0.0, context.turns()) {
         (BitLaw::Constant, ..) => no("torque on bit is constant"),
-        (BitLaw::Regenerative, ..) => no("the regenerative law has operating windows only"),
+        (BitLaw::Regenerative, ..) => no("the regenerative law has stability maps only"),
         (_, false, _) => no("there is no torque on bit"),
         (_, _, false) => no("the string does not turn"),
         (BitLaw::VelocityWeakening, true, true) => yes("torque on bit falls with the speed of the bit"),

@@ -6,7 +6,7 @@ pub mod modes;
 pub mod motion;
 pub mod run;
 pub mod soft_string;
+pub mod stability_map;
 pub mod statics;
 pub mod step;
 pub mod stiff_string;
-pub mod window;

@@ -447,9 +447,9 @@ mod tests {
             problems.0.iter().map(|problem| problem.path.clone()).collect::<Vec<_>>()
         };
         let scenario = regenerative(json!({}));
-        assert_eq!(crate::validation::validate_window(&scenario), Ok(vec![]));
+        assert_eq!(crate::validation::validate_stability_map(&scenario), Ok(vec![]));
         let problems = crate::validation::validate(&scenario).unwrap_err();
-        assert!(problems.to_string().contains("operating windows only"), "{problems}");
+        assert!(problems.to_string().contains("stability maps only"), "{problems}");
         assert_eq!(paths(problems), ["bit.law"]);
         for (change, path) in [
             (json!({ "bit_radius": 0.0 }), "bit.bit_radius"),
@@ -462,12 +462,12 @@ mod tests {
             // 0.1 m x 20 mm x 60 MPa are 120 kN or more.
             (json!({ "wear_length": 0.02 }), "operation.weight_on_bit"),
         ] {
-            let found = crate::validation::validate_window(&regenerative(change)).unwrap_err();
+            let found = crate::validation::validate_stability_map(&regenerative(change)).unwrap_err();
             assert_eq!(paths(found), [path]);
         }
         let mut scenario = scenario;
         scenario.operation.torque_on_bit = -1e3;
-        let found = crate::validation::validate_window(&scenario).unwrap_err();
+        let found = crate::validation::validate_stability_map(&scenario).unwrap_err();
         assert_eq!(paths(found), ["operation.torque_on_bit"]);
     }
 

@@ -23,11 +23,11 @@ pub fn validate(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
     check(scenario, true, Use::Run)
 }
 
-/// Checks that a scenario has operating windows: as [`validate`], but the bit may have the law `regenerative`, which no run in time has.
+/// Checks that a scenario has stability maps: as [`validate`], but the bit may have the law `regenerative`, which no run in time has.
 ///
 /// # Errors
 /// As [`validate`].
-pub fn validate_window(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
+pub fn validate_stability_map(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
     check(scenario, true, Use::Window)
 }
 
@@ -36,7 +36,7 @@ pub fn validate_window(scenario: &Scenario) -> Result<Vec<Warning>, Problems> {
 enum Use {
     /// A run in time, or anything else that is about the equations of a run.
     Run,
-    /// Operating windows of bit and drive.
+    /// Stability maps of bit and drive.
     Window,
 }
 
@@ -87,7 +87,7 @@ fn check(scenario: &Scenario, with_shape: bool, purpose: Use) -> Result<Vec<Warn
         purpose == Use::Window || written.bit.law != BitLaw::Regenerative,
         "bit.law",
         "regenerative",
-        "has operating windows only, not a run in time or its modes: take `velocity_weakening`, or `drillsweep window`",
+        "has stability maps only, not a run in time or its modes: take `velocity_weakening`, or `drillsweep stability`",
     );
     time::check(&mut report, scenario, mesh.as_ref());
     report.finish()

@@ -434,7 +434,7 @@ class Point(Reported):
         query = {"speeds": listed, "depth": in_metres, "force": force, "per_revolution": per_revolution, "units": units}
         return self.view("forced_response", **query)
 
-    def operating_window(
+    def stability_map(
         self,
         *,
         speeds: Iterable[float] | None = None,
@@ -444,8 +444,8 @@ class Point(Reported):
     ) -> Table:
         """Growth of motions of bit and string, from the linear equations: a row for each rotation speed and weight.
 
-        Columns: `rotation_speed_rpm`, `window_weight`, `window_torque`, `rate_of_penetration`, `growing_motions`,
-        `window_growth_rate`, `window_frequency`, `window_complete`. The bit needs a law other than `constant`.
+        Columns: `rotation_speed_rpm`, `stability_weight`, `stability_torque`, `rate_of_penetration`, `growing_motions`,
+        `stability_growth_rate`, `stability_frequency`, `stability_complete`. The bit needs a law other than `constant`.
 
         Args:
             speeds: Speeds of rotation [rpm]; 60 to 200 in steps of 2 unless given.
@@ -457,7 +457,7 @@ class Point(Reported):
             name: None if values is None else ",".join(map(str, values))
             for name, values in (("speeds", speeds), ("weights", weights))
         }
-        return self.view("operating_window", **lists, axial_top=axial_top, units=units)
+        return self.view("stability_map", **lists, axial_top=axial_top, units=units)
 
     def fit_friction(
         self,

@@ -1,26 +1,26 @@
-//! Operating window of a scenario's bit and drive.
+//! Stability map of a scenario's bit and drive.
 
 use drillsweep_quantity::columns::*;
 use drillsweep_scenario::Scenario;
 use drillsweep_sim::solve::model::Model;
-use drillsweep_sim::solve::statics::Equilibrium;
-use drillsweep_sim::solve::window::{
-    OperatingWindow, WindowError, WindowGrid, WindowPoint, operating_window,
+use drillsweep_sim::solve::stability_map::{
+    StabilityError, StabilityGrid, StabilityMap, StabilityPoint, stability_map,
 };
-use drillsweep_sim::validation::validate_window;
+use drillsweep_sim::solve::statics::Equilibrium;
+use drillsweep_sim::validation::validate_stability_map;
 use drillsweep_table::{Column, Table};
 
 use crate::expand::Interruption;
 use crate::problem::{ProblemDetails, ProblemKind};
 
-pub use drillsweep_sim::solve::window::{AxialTop, MOST_POINTS};
+pub use drillsweep_sim::solve::stability_map::{AxialTop, MOST_POINTS};
 
-/// Speeds of rotation of a window without any \[rpm\]: 60 to 200 in steps of 2.
+/// Speeds of rotation of a map without any \[rpm\]: 60 to 200 in steps of 2.
 const USUAL_SPEEDS: std::ops::RangeInclusive<u32> = 30..=100;
 
-/// An operating window.
+/// A stability map.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct WindowRequest {
+pub struct StabilityRequest {
     /// Speeds of rotation \[rpm\]; none for 60 to 200 in steps of 2.
     pub speeds: Vec<f64>,
     /// Weights on bit \[N\], positive: compression; none for that of the scenario.
@@ -29,33 +29,33 @@ pub struct WindowRequest {
     pub axial_top: AxialTop,
 }
 
-/// Reason for which there is no window.
+/// Reason for which there is no map.
 enum Refusal {
-    Window(WindowError),
+    Map(StabilityError),
     Interrupted(Box<ProblemDetails>),
 }
 
-impl From<WindowError> for Refusal {
-    fn from(error: WindowError) -> Self {
-        Self::Window(error)
+impl From<StabilityError> for Refusal {
+    fn from(error: StabilityError) -> Self {
+        Self::Map(error)
     }
 }
 
-impl WindowRequest {
+impl StabilityRequest {
     /// Growth at every speed and weight in increasing order. Each speed and point begins with a call of `interruption`.
     ///
     /// # Errors
     /// The scenario is not valid or has no equilibrium, the request is out of range, or the work was interrupted.
-    pub fn window(
+    pub fn map(
         &self,
         scenario: &Scenario,
         interruption: Interruption<'_>,
-    ) -> Result<OperatingWindow, Box<ProblemDetails>> {
+    ) -> Result<StabilityMap, Box<ProblemDetails>> {
         let none = |error: String| {
-            let detail = format!("the scenario has no operating window: {error}");
+            let detail = format!("the scenario has no stability map: {error}");
             Box::new(ProblemDetails::new(ProblemKind::InvalidRequest, detail))
         };
-        validate_window(scenario).map_err(|error| none(error.to_string()))?;
+        validate_stability_map(scenario).map_err(|error| none(error.to_string()))?;
         let model = Model::new(scenario).map_err(|error| none(error.to_string()))?;
         let equilibrium = Equilibrium::find(&model).map_err(|error| none(error.to_string()))?;
         let sorted = |values: &[f64]| {
@@ -64,7 +64,7 @@ impl WindowRequest {
             values.dedup();
             values
         };
-        let grid = WindowGrid {
+        let grid = StabilityGrid {
             speeds: match &self.speeds[..] {
                 [] => USUAL_SPEEDS.map(|half| 2.0 * f64::from(half)).collect(),
                 speeds => sorted(speeds),
@@ -76,34 +76,32 @@ impl WindowRequest {
             axial_top: self.axial_top,
         };
         let interrupted = || interruption().map_err(Refusal::Interrupted);
-        operating_window(scenario, &model, &equilibrium, &grid, interrupted).map_err(
-            |refusal| match refusal {
-                Refusal::Interrupted(problem) => problem,
-                Refusal::Window(error) => {
-                    Box::new(ProblemDetails::new(ProblemKind::InvalidParameter, error.to_string()))
-                }
-            },
-        )
+        stability_map(scenario, &model, &equilibrium, &grid, interrupted).map_err(|refusal| match refusal {
+            Refusal::Interrupted(problem) => problem,
+            Refusal::Map(error) => {
+                Box::new(ProblemDetails::new(ProblemKind::InvalidParameter, error.to_string()))
+            }
+        })
     }
 }
 
-/// Points of a window as a table.
-pub fn table(points: &[WindowPoint]) -> Table {
-    let numbers = |number: &dyn Fn(&WindowPoint) -> Option<f64>| {
+/// Points of a map as a table.
+pub fn table(points: &[StabilityPoint]) -> Table {
+    let numbers = |number: &dyn Fn(&StabilityPoint) -> Option<f64>| {
         Column::Number(points.iter().map(|point| number(point).unwrap_or(f64::NAN)).collect())
     };
-    let whole = |number: &dyn Fn(&WindowPoint) -> Option<usize>| {
+    let whole = |number: &dyn Fn(&StabilityPoint) -> Option<usize>| {
         Column::Integer(points.iter().map(|point| number(point).map(|count| count as i64)).collect())
     };
     Table::default()
         .with(&ROTATION_SPEED_RPM, numbers(&|point| Some(point.rotation_speed_rpm)))
-        .with(&WINDOW_WEIGHT, numbers(&|point| Some(point.weight_on_bit)))
-        .with(&WINDOW_TORQUE, numbers(&|point| Some(point.torque_on_bit)))
+        .with(&STABILITY_WEIGHT, numbers(&|point| Some(point.weight_on_bit)))
+        .with(&STABILITY_TORQUE, numbers(&|point| Some(point.torque_on_bit)))
         .with(&RATE_OF_PENETRATION, numbers(&|point| point.rate_of_penetration))
         .with(&GROWING_MOTIONS, whole(&|point| point.growing))
-        .with(&WINDOW_GROWTH_RATE, numbers(&|point| point.growth_rate))
-        .with(&WINDOW_FREQUENCY, numbers(&|point| point.frequency_hz))
-        .with(&WINDOW_COMPLETE, whole(&|point| Some(usize::from(point.complete))))
+        .with(&STABILITY_GROWTH_RATE, numbers(&|point| point.growth_rate))
+        .with(&STABILITY_FREQUENCY, numbers(&|point| point.frequency_hz))
+        .with(&STABILITY_COMPLETE, whole(&|point| Some(usize::from(point.complete))))
 }
 
 #[cfg(test)]
@@ -116,28 +114,31 @@ mod tests {
     #[test]
     fn a_window_has_a_row_a_speed_and_weight_and_refuses_what_has_none() {
         let scenario = preset("wells/stick-slip-1000m").unwrap();
-        let request = WindowRequest {
+        let request = StabilityRequest {
             speeds: vec![240.0, 120.0],
             weights: vec![1e5, 2e4],
             axial_top: AxialTop::Advance,
         };
-        let points = request.window(&scenario, UNINTERRUPTED).unwrap().points;
+        let points = request.map(&scenario, UNINTERRUPTED).unwrap().points;
         let table = table(&points);
         let column = |name: &str| table.columns[name].numbers().unwrap();
         assert_eq!(column("rotation_speed_rpm"), [120.0, 120.0, 240.0, 240.0]);
-        assert_eq!(column("window_weight"), [2e4, 1e5, 2e4, 1e5]);
+        assert_eq!(column("stability_weight"), [2e4, 1e5, 2e4, 1e5]);
         // Torque follows the weight at the speed of the scenario.
         assert!((points[1].torque_on_bit / points[0].torque_on_bit - 5.0).abs() < 1e-9);
         assert!(points[1].growth_rate > points[3].growth_rate, "{points:?}");
-        let refused = |request: &WindowRequest, scenario: &Scenario| {
-            request.window(scenario, UNINTERRUPTED).unwrap_err().detail.clone()
+        let refused = |request: &StabilityRequest, scenario: &Scenario| {
+            request.map(scenario, UNINTERRUPTED).unwrap_err().detail.clone()
         };
-        let many =
-            WindowRequest { speeds: (1..=101).map(f64::from).collect(), weights: vec![], ..request.clone() };
-        let many = WindowRequest { weights: (1..=100).map(f64::from).collect(), ..many };
+        let many = StabilityRequest {
+            speeds: (1..=101).map(f64::from).collect(),
+            weights: vec![],
+            ..request.clone()
+        };
+        let many = StabilityRequest { weights: (1..=100).map(f64::from).collect(), ..many };
         assert!(refused(&many, &scenario).contains("10000 at most"));
         assert!(refused(&request, &preset("paper-200m").unwrap()).contains("constant torque"));
         let stop = || Err(Box::new(ProblemDetails::new(ProblemKind::TooMuchWork, "enough")));
-        assert_eq!(request.window(&scenario, &stop).unwrap_err().detail, "enough");
+        assert_eq!(request.map(&scenario, &stop).unwrap_err().detail, "enough");
     }
 }

@@ -1,4 +1,4 @@
-//! Operating window of bit and drive over rotation speed and weight on bit.
+//! Stability map of bit and drive over rotation speed and weight on bit.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 use drillsweep_api::expand::UNINTERRUPTED;
-use drillsweep_api::window::{AxialTop, WindowRequest, table};
-use drillsweep_chart::operating_window;
+use drillsweep_api::stability_map::{AxialTop, StabilityRequest, table};
+use drillsweep_chart::stability_map;
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::GROWING_MOTIONS;
-use drillsweep_sim::solve::window::{OperatingWindow, WindowPoint};
+use drillsweep_sim::solve::stability_map::{StabilityMap, StabilityPoint};
 use drillsweep_table::csv;
 
 use crate::print;
@@ -19,7 +19,7 @@ use crate::scenario::ScenarioArguments;
 use crate::statics::{List, list};
 
 #[derive(Args)]
-pub(crate) struct WindowArguments {
+pub(crate) struct StabilityArguments {
     #[command(flatten)]
     scenario: ScenarioArguments,
     /// Speeds of rotation in rpm: a list or a range from:to:count; by default 60 to 200 in steps of 2.
@@ -42,34 +42,37 @@ pub(crate) struct WindowArguments {
     csv: bool,
 }
 
-/// Computes the window and prints it.
-pub(crate) fn show(arguments: &WindowArguments) -> anyhow::Result<()> {
+/// Computes the map and prints it.
+pub(crate) fn show(arguments: &StabilityArguments) -> anyhow::Result<()> {
     let scenario = arguments.scenario.resolve(None)?;
     let values = |list: &Option<List>| list.as_ref().map_or(Vec::new(), |list| list.0.clone());
     let axial_top = if arguments.axial_top == "hook_load" { AxialTop::HookLoad } else { AxialTop::Advance };
-    let request =
-        WindowRequest { speeds: values(&arguments.speeds), weights: values(&arguments.weights), axial_top };
-    let window = request.window(&scenario, UNINTERRUPTED)?;
+    let request = StabilityRequest {
+        speeds: values(&arguments.speeds),
+        weights: values(&arguments.weights),
+        axial_top,
+    };
+    let map = request.map(&scenario, UNINTERRUPTED)?;
     if let Some(path) = &arguments.picture {
         let units = UnitChoice::default();
-        let drawing = operating_window(&table(&window.points), GROWING_MOTIONS.name, &scenario.name, &units)?;
+        let drawing = stability_map(&table(&map.points), GROWING_MOTIONS.name, &scenario.name, &units)?;
         fs::write(path, drawing.svg()).with_context(|| format!("cannot write {}", path.display()))?;
     }
     match (arguments.json, arguments.csv) {
-        (true, _) => print(&serde_json::to_string_pretty(&window)?),
-        (_, true) => print(csv::write(&table(&window.points))?.trim_end()),
-        _ => print(text(&scenario.name, &window)?.trim_end()),
+        (true, _) => print(&serde_json::to_string_pretty(&map)?),
+        (_, true) => print(csv::write(&table(&map.points))?.trim_end()),
+        _ => print(text(&scenario.name, &map)?.trim_end()),
     }
     Ok(())
 }
 
 /// Map of the number of growing motions, the point of fastest growth, and the limits of the count.
-fn text(name: &str, window: &OperatingWindow) -> Result<String, std::fmt::Error> {
+fn text(name: &str, map: &StabilityMap) -> Result<String, std::fmt::Error> {
     let name = if name.is_empty() { "the scenario" } else { name };
-    let points = &window.points;
-    let by_speed: Vec<&[WindowPoint]> =
+    let points = &map.points;
+    let by_speed: Vec<&[StabilityPoint]> =
         points.chunk_by(|a, b| a.rotation_speed_rpm == b.rotation_speed_rpm).collect();
-    let mut text = format!("operating window of {name}: number of growing motions, `.` for none\n");
+    let mut text = format!("stability map of {name}: number of growing motions, `.` for none\n");
     writeln!(text, "weight kN")?;
     let weights = by_speed.first().map_or(0, |column| column.len());
     for weight in (0..weights).rev() {
@@ -98,22 +101,22 @@ fn text(name: &str, window: &OperatingWindow) -> Result<String, std::fmt::Error>
             text,
             "warning: {incomplete} of {} points are not complete: motions above {:.0} Hz are not excluded there, or one was counted and not found",
             points.len(),
-            window.complete_to_hz
+            map.complete_to_hz
         )?;
     }
-    let above = points.iter().filter(|point| point.frequency_hz > Some(window.mesh_to_hz)).count();
+    let above = points.iter().filter(|point| point.frequency_hz > Some(map.mesh_to_hz)).count();
     if above > 0 {
         writeln!(
             text,
-            "warning: at {above} points the motion is faster than {:.1} Hz, to which the mesh has ten elements to the wave: the window does not depend on the mesh, a run in time or its modes do",
-            window.mesh_to_hz
+            "warning: at {above} points the motion is faster than {:.1} Hz, to which the mesh has ten elements to the wave: the map does not depend on the mesh, a run in time or its modes do",
+            map.mesh_to_hz
         )?;
     }
     Ok(text)
 }
 
 /// Mark of a point: its number of growing motions.
-fn mark(point: &WindowPoint) -> char {
+fn mark(point: &StabilityPoint) -> char {
     match point.growing {
         None => '?',
         Some(0) => '.',
@@ -128,23 +131,24 @@ mod tests {
 
     #[test]
     fn a_map_has_weights_upwards_and_its_warnings() {
-        let point = |rpm: f64, weight: f64, growing: Option<usize>, growth_rate: Option<f64>| WindowPoint {
-            rotation_speed_rpm: rpm,
-            weight_on_bit: weight,
-            torque_on_bit: 5e3,
-            rate_of_penetration: None,
-            growing,
-            growth_rate,
-            frequency_hz: growth_rate.map(|_| 7.5),
-            complete: growing.is_some(),
-        };
+        let point =
+            |rpm: f64, weight: f64, growing: Option<usize>, growth_rate: Option<f64>| StabilityPoint {
+                rotation_speed_rpm: rpm,
+                weight_on_bit: weight,
+                torque_on_bit: 5e3,
+                rate_of_penetration: None,
+                growing,
+                growth_rate,
+                frequency_hz: growth_rate.map(|_| 7.5),
+                complete: growing.is_some(),
+            };
         let points = vec![
             point(60.0, 5e4, Some(1), Some(0.5)),
             point(60.0, 1e5, Some(3), Some(1.25)),
             point(120.0, 5e4, Some(0), None),
             point(120.0, 1e5, None, None),
         ];
-        let window = OperatingWindow { points, complete_to_hz: 300.0, mesh_to_hz: 6.4 };
-        insta::assert_snapshot!(text("well", &window).unwrap());
+        let map = StabilityMap { points, complete_to_hz: 300.0, mesh_to_hz: 6.4 };
+        insta::assert_snapshot!(text("well", &map).unwrap());
     }
 }

@@ -1,4 +1,4 @@
-//! Operating window of a point's bit and drive.
+//! Stability map of a point's bit and drive.
 
 use std::time::Duration;
 
@@ -6,8 +6,8 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use drillsweep_api::window::{AxialTop, WindowRequest, table};
-use drillsweep_chart::operating_window;
+use drillsweep_api::stability_map::{AxialTop, StabilityRequest, table};
+use drillsweep_chart::stability_map;
 use drillsweep_quantity::UnitChoice;
 use drillsweep_quantity::columns::GROWING_MOTIONS;
 use drillsweep_table::Table;
@@ -24,11 +24,11 @@ use crate::openapi::answers::{Conditional, PictureResponse, Problems};
 use crate::route::analysis::{MEMORY_OF_EQUILIBRIUM, point};
 use crate::route::results::{PointPath, file_name};
 
-/// Query of an operating window.
+/// Query of a stability map.
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct WindowQuery {
+pub(crate) struct StabilityQuery {
     /// Speeds of rotation \[rpm\]: numbers separated by commas, or `FROM:TO:COUNT`; absent means 60 to 200 in steps of 2.
     #[serde(default, deserialize_with = "value::list")]
     #[param(value_type = Option<String>, example = "60:200:71")]
@@ -47,29 +47,29 @@ pub(crate) struct WindowQuery {
     /// Units of the columns: `si` (with prefixes) or `field` (the oil field's), and `COLUMN:UNIT` for single columns, separated by commas. Absent means the kept
     /// units, and SI with prefixes for a picture.
     #[serde(default, deserialize_with = "value::units")]
-    #[param(value_type = Option<String>, example = "field,window_weight:kN")]
+    #[param(value_type = Option<String>, example = "field,stability_weight:kN")]
     units: Option<UnitChoice>,
     /// Column that a picture shows, growing motions unless given.
     field: Option<String>,
 }
 
-/// Operating window of a point's bit and drive
+/// Stability map of a point's bit and drive
 ///
 /// Number of motions of bit and string that grow, growth and frequency of the fastest, from the linear equations with the law of the point's bit: a row for each
 /// rotation speed and weight on bit. The place of the string is the equilibrium of the point. The bit needs a law other than `constant`.
 #[utoipa::path(
     get,
-    path = "/v1/sweeps/{id}/points/{n}/operating_window",
+    path = "/v1/sweeps/{id}/points/{n}/stability_map",
     tag = "points",
-    operation_id = "get_operating_window",
-    params(PointPath, WindowQuery, Conditional),
+    operation_id = "get_stability_map",
+    params(PointPath, StabilityQuery, Conditional),
     responses(PictureResponse, Problems)
 )]
 pub(crate) async fn show(
     State(app): State<App>,
     Extension(caller): Extension<Caller>,
     Path(PointPath { id, n }): Path<PointPath>,
-    Query(query): Query<WindowQuery>,
+    Query(query): Query<StabilityQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     /// Bytes of a row, in memory and in writing.
@@ -77,13 +77,13 @@ pub(crate) async fn show(
     /// Processor time of all points, as of 10,000 at 1 ms each.
     const OF_POINTS: Duration = Duration::from_secs(15);
     let form = Form::choose(query.format, query.units.clone(), &headers)?;
-    let request = WindowRequest {
+    let request = StabilityRequest {
         speeds: query.speeds.clone(),
         weights: query.weights.clone(),
         axial_top: query.axial_top.unwrap_or_default(),
     };
     let point = point(&app, &id, n).await?;
-    let tag = Tag::of(&form, &("operating_window", &point.key, &query));
+    let tag = Tag::of(&form, &("stability_map", &point.key, &query));
     if let Some(unchanged) = tag.unchanged(&headers) {
         return Ok(unchanged);
     }
@@ -91,17 +91,16 @@ pub(crate) async fn show(
     let (table, _memory): (Table, _) = place
         .run(move |work: &mut Work| {
             work.allow(OF_POINTS);
-            Ok(table(&request.window(&point.scenario, &|| work.check())?.points))
+            Ok(table(&request.map(&point.scenario, &|| work.check())?.points))
         })
         .await?;
     let place = app.view(form.format.memory(OF_ROW * table.rows() as u64)).await?;
     place
         .answer(move || {
             let column = query.field.as_deref().unwrap_or(GROWING_MOTIONS.name);
-            let draw = |table: &Table, units: &UnitChoice| {
-                operating_window(table, column, "Operating window", units)
-            };
-            let name = file_name(&id, n, "operating-window");
+            let draw =
+                |table: &Table, units: &UnitChoice| stability_map(table, column, "Stability map", units);
+            let name = file_name(&id, n, "stability-map");
             Answer::of_table_or_picture(table, None, form, &name, Some(tag), draw)
         })
         .await

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::chain::{AxialTop, Chain, Part, Top};
 use super::feedback::Feedback;
-use super::grid::{WindowError, WindowGrid, chains, operating_window, table};
+use super::grid::{StabilityError, StabilityGrid, chains, stability_map, table};
 use super::roots::growing;
 use super::table::Table;
 use crate::solve::model::Model;
@@ -144,10 +144,10 @@ fn a_rigid_mass_under_its_hook_load_is_stable_above_its_published_speed() {
 #[test]
 fn a_bit_of_falling_torque_has_the_published_roots_and_critical_speeds() {
     let mut scenario = string(1.0).with("bit.law", json!("velocity_weakening")).unwrap();
-    let window = |scenario: &Scenario, speeds: Vec<f64>| {
+    let map = |scenario: &Scenario, speeds: Vec<f64>| {
         let (model, equilibrium) = model(scenario);
-        let grid = WindowGrid { speeds, weights: vec![1e5], axial_top: AxialTop::Advance };
-        operating_window::<WindowError>(scenario, &model, &equilibrium, &grid, || Ok(())).unwrap()
+        let grid = StabilityGrid { speeds, weights: vec![1e5], axial_top: AxialTop::Advance };
+        stability_map::<StabilityError>(scenario, &model, &equilibrium, &grid, || Ok(())).unwrap()
     };
     let roots =
         growing(&table_of(&scenario, AxialTop::Advance), false, &Feedback::Weakening { slope: 101.741 });
@@ -155,7 +155,7 @@ fn a_bit_of_falling_torque_has_the_published_roots_and_critical_speeds() {
     near(&roots.found, &[(0.486531, 3.300400), (0.035779, 12.663423)], 2e-6);
     // The published ones are of 17 and 6 elements, which change the second frequency by (omega h / c)^2 / 24.
     near(&roots.found, &[(0.48664, 3.30055), (0.03587, 12.6822)], 2e-2);
-    let point = window(&scenario, vec![120.0]).points[0];
+    let point = map(&scenario, vec![120.0]).points[0];
     assert_eq!(point.growing, Some(2), "{point:?}");
     assert!((point.growth_rate.unwrap() / 0.48664 - 1.0).abs() < 2e-3, "{point:?}");
     assert!((point.frequency_hz.unwrap() * TAU / 3.30055 - 1.0).abs() < 2e-4, "{point:?}");
@@ -175,7 +175,7 @@ fn a_bit_of_falling_torque_has_the_published_roots_and_critical_speeds() {
     ] {
         scenario.top_drive = drive;
         // Half of a thousandth either way: of the last digit, and of the mesh of the published ones.
-        let found = window(&scenario, vec![0.9985 * critical, 1.0015 * critical]).points;
+        let found = map(&scenario, vec![0.9985 * critical, 1.0015 * critical]).points;
         assert!(found[0].growing > Some(0) && found[1].growing == Some(0), "{critical}: {found:?}");
     }
 }
@@ -427,15 +427,15 @@ fn grids_out_of_range_and_bits_that_do_not_drill_are_refused() {
     let scenario = cutting(1.0);
     let (model, equilibrium) = model(&scenario);
     let refused = |scenario: &Scenario, speeds: Vec<f64>, weights: Vec<f64>| {
-        let grid = WindowGrid { speeds, weights, axial_top: AxialTop::Advance };
-        operating_window::<WindowError>(scenario, &model, &equilibrium, &grid, || Ok(())).unwrap_err()
+        let grid = StabilityGrid { speeds, weights, axial_top: AxialTop::Advance };
+        stability_map::<StabilityError>(scenario, &model, &equilibrium, &grid, || Ok(())).unwrap_err()
     };
-    assert_eq!(refused(&scenario, vec![], vec![1e5]), WindowError::Empty);
-    assert_eq!(refused(&scenario, vec![120.0; 101], vec![1e5; 100]), WindowError::TooManyPoints(10_100));
-    assert!(matches!(refused(&scenario, vec![f64::NAN], vec![1e5]), WindowError::Speed { .. }));
-    assert!(matches!(refused(&scenario, vec![0.5], vec![1e5]), WindowError::Speed { .. }));
-    assert_eq!(refused(&scenario, vec![120.0], vec![-1e5]), WindowError::Weight(-1e5));
-    assert!(matches!(refused(&scenario, vec![120.0], vec![6e4]), WindowError::DoesNotDrill { .. }));
+    assert_eq!(refused(&scenario, vec![], vec![1e5]), StabilityError::Empty);
+    assert_eq!(refused(&scenario, vec![120.0; 101], vec![1e5; 100]), StabilityError::TooManyPoints(10_100));
+    assert!(matches!(refused(&scenario, vec![f64::NAN], vec![1e5]), StabilityError::Speed { .. }));
+    assert!(matches!(refused(&scenario, vec![0.5], vec![1e5]), StabilityError::Speed { .. }));
+    assert_eq!(refused(&scenario, vec![120.0], vec![-1e5]), StabilityError::Weight(-1e5));
+    assert!(matches!(refused(&scenario, vec![120.0], vec![6e4]), StabilityError::DoesNotDrill { .. }));
     let constant = scenario.with("bit.law", Value::from("constant")).unwrap();
-    assert_eq!(refused(&constant, vec![120.0], vec![1e5]), WindowError::ConstantTorque);
+    assert_eq!(refused(&constant, vec![120.0], vec![1e5]), StabilityError::ConstantTorque);
 }

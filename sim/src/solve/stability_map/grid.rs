@@ -15,7 +15,7 @@ use crate::solve::modes::{ModesError, rubbing};
 use crate::solve::statics::Equilibrium;
 use crate::string::beam::BeamSection;
 
-/// Largest number of points of a window.
+/// Largest number of points of a map.
 pub const MOST_POINTS: usize = 10_000;
 
 /// Elements in a wave from which a mesh resolves it.
@@ -30,9 +30,9 @@ const MOST_VALUES: f64 = 4e6;
 /// Places of a table, some 5 MB: a slow bit has a long delay, which many places must follow.
 const MOST_PLACES: f64 = 65_536.0;
 
-/// Speeds and weights of a window.
+/// Speeds and weights of a map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WindowGrid {
+pub struct StabilityGrid {
     /// Speeds of rotation \[rpm\], above 0.
     pub speeds: Vec<f64>,
     /// Weights on bit \[N\], positive: compression.
@@ -41,20 +41,20 @@ pub struct WindowGrid {
     pub axial_top: AxialTop,
 }
 
-/// Operating window: a point for each speed and, within it, each weight.
+/// Stability map: a point for each speed and, within it, each weight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OperatingWindow {
+pub struct StabilityMap {
     /// Points, by speed, then by weight.
-    pub points: Vec<WindowPoint>,
+    pub points: Vec<StabilityPoint>,
     /// Frequency \[Hz\] up to which growing motions were counted at every point; none is above at points that are `complete`.
     pub complete_to_hz: f64,
-    /// Frequency \[Hz\] up to which the mesh of the scenario has ten elements to the wave. The window does not depend on the mesh; runs and modes at higher frequencies do.
+    /// Frequency \[Hz\] up to which the mesh of the scenario has ten elements to the wave. The map does not depend on the mesh; runs and modes at higher frequencies do.
     pub mesh_to_hz: f64,
 }
 
 /// Growth at a speed of rotation and a weight on bit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct WindowPoint {
+pub struct StabilityPoint {
     /// Speed of rotation \[rpm\].
     pub rotation_speed_rpm: f64,
     /// Weight on bit \[N\], positive: compression.
@@ -73,9 +73,9 @@ pub struct WindowPoint {
     pub complete: bool,
 }
 
-/// Reason for which a scenario has no operating window.
+/// Reason for which a scenario has no stability map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum WindowError {
+pub enum StabilityError {
     /// The equations of small motions do not apply.
     #[error(transparent)]
     Modes(#[from] ModesError),
@@ -85,7 +85,7 @@ pub enum WindowError {
     )]
     ConstantTorque,
     /// An axis is empty.
-    #[error("an operating window needs at least one speed and one weight")]
+    #[error("a stability map needs at least one speed and one weight")]
     Empty,
     /// Too many points are requested.
     #[error("{0} points are requested, of {MOST_POINTS} at most")]
@@ -124,18 +124,18 @@ pub enum WindowError {
 ///
 /// # Errors
 /// The grid is empty, too large or out of range; the bit does not follow the motion; or `interrupted`, called at each speed and point, returns an error.
-pub fn operating_window<E: From<WindowError>>(
+pub fn stability_map<E: From<StabilityError>>(
     scenario: &Scenario,
     model: &Model,
     equilibrium: &Equilibrium,
-    grid: &WindowGrid,
+    grid: &StabilityGrid,
     mut interrupted: impl FnMut() -> Result<(), E>,
-) -> Result<OperatingWindow, E> {
+) -> Result<StabilityMap, E> {
     let bits = check(scenario, model, grid)?;
     let slowest = grid.speeds.iter().copied().fold(f64::INFINITY, f64::min);
     let longest_delay = bits.iter().map(|bit| bit.feedback(slowest).delay()).fold(0.0, f64::max);
-    let mut window =
-        OperatingWindow { points: Vec::new(), complete_to_hz: f64::INFINITY, mesh_to_hz: mesh_to_hz(model) };
+    let mut map =
+        StabilityMap { points: Vec::new(), complete_to_hz: f64::INFINITY, mesh_to_hz: mesh_to_hz(model) };
     let mut last: Option<(Vec<f64>, Table)> = None;
     for &speed_rpm in &grid.speeds {
         interrupted()?;
@@ -145,18 +145,18 @@ pub fn operating_window<E: From<WindowError>>(
             Some((of_last, table)) if of_last == dampers => table,
             _ => {
                 let chains = chains(model, &dampers, grid.axial_top);
-                table(chains, longest_delay).ok_or(WindowError::NotCounted { speed_rpm })?
+                table(chains, longest_delay).ok_or(StabilityError::NotCounted { speed_rpm })?
             }
         };
-        window.complete_to_hz = window.complete_to_hz.min(table.highest() / TAU);
+        map.complete_to_hz = map.complete_to_hz.min(table.highest() / TAU);
         let is_free = grid.axial_top == AxialTop::HookLoad;
         for bit in &bits {
             interrupted()?;
-            window.points.push(bit.point(speed_rpm, &growing(&table, is_free, &bit.feedback(speed_rpm))));
+            map.points.push(bit.point(speed_rpm, &growing(&table, is_free, &bit.feedback(speed_rpm))));
         }
         last = Some((dampers, table));
     }
-    Ok(window)
+    Ok(map)
 }
 
 /// Table of chains up to the highest frequency that its size allows.
@@ -250,33 +250,37 @@ struct WeightedBit {
 }
 
 /// Bits of a grid's weights.
-fn check(scenario: &Scenario, model: &Model, grid: &WindowGrid) -> Result<Vec<WeightedBit>, WindowError> {
+fn check(
+    scenario: &Scenario,
+    model: &Model,
+    grid: &StabilityGrid,
+) -> Result<Vec<WeightedBit>, StabilityError> {
     ModesError::require_no_axial_speed(model.body_motion())?;
     let bit = &scenario.bit;
     if bit.law == BitLaw::Constant {
-        return Err(WindowError::ConstantTorque);
+        return Err(StabilityError::ConstantTorque);
     }
     let count = grid.speeds.len().saturating_mul(grid.weights.len());
     if count == 0 {
-        return Err(WindowError::Empty);
+        return Err(StabilityError::Empty);
     }
     if count > MOST_POINTS {
-        return Err(WindowError::TooManyPoints(count));
+        return Err(StabilityError::TooManyPoints(count));
     }
     let slowest_rpm = bit.regularisation_speed * 30.0 / PI;
     if let Some(&speed_rpm) = grid.speeds.iter().find(|speed| !(speed.is_finite() && **speed >= slowest_rpm))
     {
-        return Err(WindowError::Speed { speed_rpm, slowest_rpm });
+        return Err(StabilityError::Speed { speed_rpm, slowest_rpm });
     }
     grid.weights
         .iter()
         .map(|&weight| {
             if !(weight.is_finite() && weight >= 0.0) {
-                return Err(WindowError::Weight(weight));
+                return Err(StabilityError::Weight(weight));
             }
             let carried = bit.carried_weight(scenario.bit_radius());
             if bit.law == BitLaw::Regenerative && bit.steady_cut(scenario.bit_radius(), weight).is_none() {
-                return Err(WindowError::DoesNotDrill { weight, carried });
+                return Err(StabilityError::DoesNotDrill { weight, carried });
             }
             let mut scenario = scenario.clone();
             scenario.operation.weight_on_bit = -weight;
@@ -305,14 +309,14 @@ impl WeightedBit {
         self.scenario.operation.rotation_speed_rpm.abs() * PI / 30.0
     }
 
-    fn point(&self, rotation_speed_rpm: f64, growing: &Growing) -> WindowPoint {
+    fn point(&self, rotation_speed_rpm: f64, growing: &Growing) -> StabilityPoint {
         let bit = &self.scenario.bit;
         let speed = rotation_speed_rpm * PI / 30.0;
         let is_regenerative = bit.law == BitLaw::Regenerative;
         let cut = bit.steady_cut(self.scenario.bit_radius(), self.weight).filter(|_| is_regenerative);
         let fastest = growing.found.iter().max_by(|a, b| a.re.total_cmp(&b.re));
         let is_found = growing.counted == Some(growing.found_with_conjugates());
-        WindowPoint {
+        StabilityPoint {
             rotation_speed_rpm,
             weight_on_bit: self.weight,
             torque_on_bit: match cut {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::top_drive::SpeedControl;
 
-/// Axial condition of the top in an operating window.
+/// Axial condition of the top in a stability map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AxialTop {
